@@ -6,25 +6,23 @@ import json
 import sys
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import closing
-from typing import Any, Final
+from typing import Final
 
 import click
 
 from tltlc.core.record import record, replace
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
-from tltlc.diagnostics.formats.json import entry
 from tltlc.diagnostics.formats.text import replace_unprintable
 from tltlc.interfaces.cli import exits
-from tltlc.interfaces.cli.inputs import Input, open_input
+from tltlc.interfaces.cli.inputs import open_input
 from tltlc.interfaces.cli.report import Report
 from tltlc.interfaces.cli.settings import CompileSettings
 from tltlc.monitor import long_steps
-from tltlc.pipeline import CompileOptions
-from tltlc.tools.judge.clauses import Clauses, clauses_of
+from tltlc.tools.judge.json_values import summary_values, trace_values
 from tltlc.tools.judge.pool import judge_files
-from tltlc.tools.judge.summary import cause_groups, group_json, summary_text, trace_text, unread_codes
+from tltlc.tools.judge.summary import summary_text, trace_text
 from tltlc.tools.judge.trace_files import find_traces
-from tltlc.tools.judge.verdict import JudgedTrace, RejectionCause
+from tltlc.tools.judge.verdict import JudgedTrace
 
 _MOST_NAMED: Final = 3
 """At most this many files that are not traces are named. Further ones are counted."""
@@ -65,8 +63,7 @@ def judge_traces(
         report.add(files.errors)
         if files.others:
             report.say(_others_text(files.others))
-        clauses = _clauses(spec_input)
-        judged = judge_files(fspa, clauses, files.traces, options.workers, episodes=options.episodes)
+        judged = judge_files(fspa, spec_input.clauses(), files.traces, options.workers, episodes=options.episodes)
         show = _show_json if options.as_json else _show_lines
         try:
             with closing(judged):
@@ -88,14 +85,6 @@ def judge_traces(
         accepted = [trace.verdict is not None and trace.verdict.outcome.accepted for trace in traces]
         return report.status or (exits.CLEAN if all(accepted) else exits.FINDINGS)
     return report.status
-
-
-def _clauses(spec_input: Input) -> Clauses:
-    fspa = spec_input.only_automaton()
-    program = spec_input.program
-    spec = next((spec for spec in program.specs if spec.name == fspa.name), None) if program else None
-    options = spec_input.session.options if spec_input.session else CompileOptions()
-    return clauses_of(fspa, spec, options.state_budget)
 
 
 def _others_text(others: Sequence[str]) -> str:
@@ -146,50 +135,11 @@ def _show_json(spec: str, judged: Iterable[JudgedTrace]) -> Iterator[JudgedTrace
     print(json.dumps({"spec": spec})[:-1] + ', "traces": [', flush=True)
     between = ""
     for trace in judged:
-        sys.stdout.write(between + json.dumps(_trace_document(trace)))
+        sys.stdout.write(between + json.dumps(trace_values(trace)))
         sys.stdout.flush()
         between = ",\n"
         yield trace
 
 
-def _trace_document(trace: JudgedTrace) -> dict[str, Any]:
-    document: dict[str, Any] = {"trace": trace.name, "accepted": None, "verdict": None}
-    cause = trace.so_far
-    if trace.verdict is not None:
-        outcome, cause = trace.verdict.outcome, trace.verdict.cause
-        document |= {
-            "accepted": outcome.accepted,
-            "verdict": outcome.verdict,
-            "samples": trace.verdict.samples,
-            "steps": outcome.steps,
-            "progress": outcome.progress,
-            "reward": outcome.total_reward,
-            "remaining": trace.verdict.remaining,
-            "unmet": trace.verdict.unmet,
-        }
-    return {**document, "cause": _cause_document(cause), "diagnostics": list(map(entry, trace.diagnostics))}
-
-
-def _cause_document(cause: RejectionCause | None) -> dict[str, Any] | None:
-    if cause is None:
-        return None
-    return {
-        "kind": cause.kind,
-        "step": cause.step,
-        "clauses": list(cause.clauses),
-        "atoms": list(cause.atoms),
-    }
-
-
 def _end_json(traces: Sequence[JudgedTrace], total: int, others: Sequence[str]) -> None:
-    codes = unread_codes(traces)
-    end = {
-        "complete": len(traces) == total,
-        "total": total,
-        "accepted": sum(trace.verdict is not None and trace.verdict.outcome.accepted for trace in traces),
-        "unread": sum(codes.values()),
-        "unread_codes": codes,
-        "not_traces": list(others),
-        "causes": list(map(group_json, cause_groups(traces))),
-    }
-    print("\n], " + json.dumps(end)[1:])
+    print("\n], " + json.dumps(summary_values(traces, total, others))[1:])

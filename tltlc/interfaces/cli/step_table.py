@@ -11,6 +11,7 @@ from tltlc.automaton.text import label_text
 from tltlc.expression.tree import AtomValue
 from tltlc.monitor.run import RunStep
 from tltlc.program.flags import Flags
+from tltlc.tools.judge.failing_step import short_number
 
 _NUMBER: Final = 9
 """The width of a column of numbers with three digits: ``-1.23e-05`` is the longest."""
@@ -49,10 +50,12 @@ class StepTable:
         """Yield the line of a step, and after it what remains to be done, if the step changed it."""
         step = row.step
         atoms = [
-            ("yes" if row.values[index] > 0.0 else "no") if flag else number(row.values[index])
+            ("yes" if row.values[index] > 0.0 else "no") if flag else short_number(row.values[index])
             for index, flag in zip(self._atoms, self._flags, strict=True)
         ]
-        yield self._line([str(row.number), step.verdict, number(step.progress), number(step.reward), *atoms])
+        yield self._line(
+            [str(row.number), step.verdict, short_number(step.progress), short_number(step.reward), *atoms]
+        )
         if step.state != self._state:
             self._state = step.state
             if step.verdict in ("pending", "holding"):
@@ -64,11 +67,6 @@ class StepTable:
             for cell, (title, wide) in zip(cells, self._titles, strict=True)
         ]
         return "  ".join(aligned).rstrip()
-
-
-def number(value: float) -> str:
-    """Return a number with three significant digits."""
-    return f"{value + 0.0:.3g}"
 
 
 def flags(fspa: Fspa) -> frozenset[int]:

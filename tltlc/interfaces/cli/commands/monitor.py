@@ -23,12 +23,12 @@ from tltlc.io.spec_file import ARTEFACT_ENDING, STDIN, STDIN_NAME, input_error, 
 
 if TYPE_CHECKING:
     from tltlc.automaton.fspa import Fspa
-    from tltlc.interfaces.cli.failing_step import ClausePlace, FailingStep
     from tltlc.interfaces.cli.inputs import Input
     from tltlc.monitor.monitor import Monitor
     from tltlc.monitor.run import RunStep, TraceOutcome
     from tltlc.monitor.trace_rows import Stream
     from tltlc.resolve.spec import Signal
+    from tltlc.tools.judge.failing_step import ClausePlace, FailingStep
 
 
 Output = Literal["json", "csv", "table"]
@@ -107,11 +107,11 @@ def command(
 
 def _judge_steps(spec: str, trace: str, settings: CompileSettings, format: str, output: Output) -> int:  # noqa: A002
     """Judge one trace, and print a row for each step while reading it; return the exit status."""
-    from tltlc.interfaces.cli.failing_step import FailingStep
     from tltlc.monitor import Monitor
     from tltlc.monitor.long_steps import LongSteps, shortest_time
     from tltlc.monitor.run import outcome, run
     from tltlc.monitor.traces import read_trace
+    from tltlc.tools.judge.failing_step import FailingStep
 
     result: TraceOutcome | None = None
     with Report(format, results=True) as report:
@@ -139,7 +139,7 @@ def _judge_steps(spec: str, trace: str, settings: CompileSettings, format: str, 
 
 def _clause_places(spec_input: Input) -> tuple[ClausePlace, ...]:
     """Return the places of the clauses in the source; none if the spec is an artefact."""
-    from tltlc.interfaces.cli.failing_step import ClausePlace
+    from tltlc.tools.judge.failing_step import ClausePlace
 
     name = spec_input.only_automaton().name
     specs = spec_input.program.specs if spec_input.program else ()
@@ -260,28 +260,13 @@ def _end_text(result: TraceOutcome, monitor: Monitor, failing: FailingStep) -> N
 
 
 def _show_json(fspa: Fspa, rows: Iterator[RunStep]) -> Iterator[RunStep]:
-    names = [atom.name for atom in fspa.atoms]
+    from tltlc.tools.judge.json_values import step_values
+
     print(json.dumps({"spec": fspa.name})[:-1] + ', "rows": [', flush=True)
     between = ""
     try:
         for row in rows:
-            step = row.step
-            row_values = {
-                "step": row.number,
-                "state": step.state,
-                "label": step.label,
-                "label_english": step.label_english,
-                "verdict": step.verdict,
-                "accepting": step.accepting,
-                "done": step.done,
-                "progress": step.progress,
-                "reward": step.reward,
-                "atoms": dict(zip(names, row.values, strict=True)),
-                "failed_clause": step.failed_clause,
-                "failed_atom": step.failed_atom,
-                "failed_step": step.failed_step,
-            }
-            sys.stdout.write(between + json.dumps(row_values))
+            sys.stdout.write(between + json.dumps(step_values(fspa, row)))
             sys.stdout.flush()
             between = ",\n"
             yield row
@@ -292,12 +277,6 @@ def _show_json(fspa: Fspa, rows: Iterator[RunStep]) -> Iterator[RunStep]:
 
 
 def _end_json(result: TraceOutcome, _: Monitor, failing: FailingStep) -> None:
-    end = {
-        "accepted": result.accepted,
-        "verdict": result.verdict,
-        "steps": result.steps,
-        "progress": result.progress,
-        "reward": result.total_reward,
-        "failure": failing.document(),
-    }
-    print("\n], " + json.dumps(end)[1:])
+    from tltlc.tools.judge.json_values import outcome_values
+
+    print("\n], " + json.dumps({**outcome_values(result), "failure": failing.values()})[1:])

@@ -13,8 +13,7 @@ from tltlc.interfaces.cli.settings import CompileSettings, search_steps, source_
 
 if TYPE_CHECKING:
     from tltlc.automaton.fspa import Fspa
-    from tltlc.tools.witness.traces import Witness
-    from tltlc.tools.witness.transitions import Moves
+    from tltlc.tools.witness.traces import Witness, WitnessKind
 
 
 @click.command(
@@ -63,16 +62,18 @@ def command(
     """
     from tltlc.interfaces.cli.inputs import open_input
     from tltlc.io.writing import write_files
+    from tltlc.tools.witness.chosen_traces import chosen_traces
     from tltlc.tools.witness.transitions import Moves
 
-    if not (accepting or rejecting or cover):
-        accepting = rejecting = True
+    options: dict[WitnessKind, bool] = {"accepting": accepting, "rejecting": rejecting, "cover": cover}
+    kinds = {name for name, is_given in options.items() if is_given} or {"accepting", "rejecting"}
     with Report(format, results=True) as report:
         spec_input = open_input(spec, settings)
         report.add(spec_input.diagnostics)
         files: dict[str, str | bytes] = {}
         for fspa in spec_input.automata:
-            traces = _traces(Moves(fspa), accepting, rejecting, cover, settings, report)
+            traces, warnings = chosen_traces(Moves(fspa), kinds, search_steps(settings))
+            report.add(warnings)
             files.update(_trace_texts(fspa, traces, kind, report))
         if folder is not None:
             changed_paths = write_files(folder, files)
@@ -90,37 +91,9 @@ def command(
     return report.status
 
 
-def _traces(
-    moves: Moves, accepting: bool, rejecting: bool, cover: bool, settings: CompileSettings, report: Report
-) -> list[Witness]:
-    """Return the traces that the options request; warn in ``report`` about those that do not exist.
-
-    ``moves`` are the transitions of the automaton.
-    """
-    from tltlc.tools.witness import captions, traces
-    from tltlc.tools.witness import cover as edge_cover
-
-    fspa = moves.fspa
-    work = search_steps(settings)
-    witnesses: list[Witness] = []
-    with captions.reporting_out_of_work(fspa):
-        for is_requested, search, outcome in (
-            (accepting, traces.accepting_trace, "accepted"),
-            (rejecting, traces.rejecting_trace, "rejected"),
-        ):
-            trace = search(moves, work) if is_requested else None
-            if trace is not None:
-                witnesses.append(trace)
-            elif is_requested:
-                report.add([captions.no_trace_warning(moves, outcome)])
-    if cover:
-        all_edges = edge_cover.cover(moves)
-        witnesses += all_edges.traces
-        report.add(captions.untaken_warnings(fspa, all_edges.untaken))
-    return witnesses
-
-
-def _trace_texts(fspa: Fspa, traces: list[Witness], kind: Literal["test", "csv"], report: Report) -> dict[str, str]:
+def _trace_texts(
+    fspa: Fspa, traces: tuple[Witness, ...], kind: Literal["test", "csv"], report: Report
+) -> dict[str, str]:
     """Return the text of each trace by file name, as a ``test`` block or as CSV: ``heist_cover_1.csv``.
 
     If the spec has no atoms, or no signals for CSV, report an error and return an empty dict.

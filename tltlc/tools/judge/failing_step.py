@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from typing import Any
 
+from tltlc.automaton.memory import schedule
 from tltlc.core.record import record
-from tltlc.expression.tree import SignalValue, nodes
-from tltlc.interfaces.cli.step_table import flags, number
+from tltlc.expression.tree import AtomValue, SignalValue, nodes
 from tltlc.monitor.failure_words import atom_words, unmet_words
 from tltlc.monitor.monitor import Monitor
 from tltlc.monitor.run import RunStep
 from tltlc.monitor.traces import TraceSample
+from tltlc.program.flags import Flags
 from tltlc.tools.judge.measures import measure
 
 
@@ -64,8 +65,8 @@ class FailingStep:
             yield f"at step {failed.step}: {values}"
         yield f"what remained before: {unmet_words(fspa, failed)}"
 
-    def document(self) -> dict[str, Any] | None:
-        """Return the failure as JSON data; None if the trace does not fail.
+    def values(self) -> dict[str, Any] | None:
+        """Return the failure as JSON values; None if the trace does not fail.
 
         ``clause`` is the number of the clause, from 1. ``atoms`` has the values of the atoms that decide the
         failure, and ``unmet`` says in words what remained before it.
@@ -93,11 +94,16 @@ class FailingStep:
         measured = measure(fspa, atom, self._known)
         if measured is not None and measured.value is not None:
             unit = f" {measured.unit}" if measured.unit else ""
-            return f"{measured.quantity} is {number(measured.value)}{unit}"
-        if atom in flags(fspa):
+            return f"{measured.quantity} is {short_number(measured.value)}{unit}"
+        if AtomValue(fspa.atoms[atom].name) in Flags(fspa, schedule(fspa)):
             return f"{atom_words(fspa, atom)} is {'true' if self._values[atom] > 0.0 else 'false'}"
         read = [node.name for node in nodes(fspa.atoms[atom].expression) if isinstance(node, SignalValue)]
         signals = {signal.name for signal in fspa.signals}
-        measures = [f"{name} is {number(self._known[name])}" for name in dict.fromkeys(read) if name in signals]
-        value = f"{atom_words(fspa, atom)} is {number(self._values[atom])}"
+        measures = [f"{name} is {short_number(self._known[name])}" for name in dict.fromkeys(read) if name in signals]
+        value = f"{atom_words(fspa, atom)} is {short_number(self._values[atom])}"
         return f"{value} ({', '.join(measures)})" if measures else value
+
+
+def short_number(value: float) -> str:
+    """Return a number with three significant digits."""
+    return f"{value + 0.0:.3g}"
