@@ -52,6 +52,11 @@ def permit(process: ProcessLimit) -> None:
     _command_limits[:] = [process]
 
 
+def permitted() -> ProcessLimit | None:
+    """Return the limits that :func:`permit` has set; None if it was not called."""
+    return _command_limits[0] if _command_limits else None
+
+
 @contextmanager
 def resource_limits() -> Iterator[None]:
     """Limit the processor time and the memory of the ``with`` block to what :func:`permit` has set.

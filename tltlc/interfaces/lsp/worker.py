@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import asyncio
 import multiprocessing
-import os
-import threading
 from contextlib import suppress
 from multiprocessing.connection import Connection
 from multiprocessing.process import BaseProcess
@@ -13,6 +11,7 @@ from typing import Final
 
 from tltlc.interfaces.lsp.slow_analysis import DocumentAnalysis, Request
 from tltlc.io.limits import COMMAND
+from tltlc.io.parent_process import end_with_parent
 from tltlc.io.resources import limit
 
 LONGEST_S: Final = 60.0
@@ -80,7 +79,7 @@ def answer_all(pipe: Connection) -> None:
     The result is None if an analysis needs too much memory or nests too deep. This is the main
     function of the worker process.
     """
-    threading.Thread(target=_end_with_server, daemon=True).start()
+    end_with_parent()
     limit("RLIMIT_DATA", COMMAND.memory)
     from tltlc.interfaces.lsp.slow_analysis import analyse
 
@@ -91,14 +90,3 @@ def answer_all(pipe: Connection) -> None:
                 pipe.send(analyse(request))
             except (RecursionError, MemoryError):
                 pipe.send(None)
-
-
-def _end_with_server() -> None:
-    """End this worker process as soon as the server ends, even if the server is killed.
-
-    This also ends an analysis that is still running.
-    """
-    server = multiprocessing.parent_process()
-    if server is not None:
-        server.join()
-        os._exit(0)
