@@ -58,7 +58,7 @@ LARGE = (
 """Files without quick tests, because they compute for seconds: large formulas, whole corpora."""
 
 STARTS_PROCESSES = re.compile(
-    r"\b(subprocess|multiprocessing|os\.fork|chromium|diff\.repository|docs\.sessions|lsp\.client|playground\.(browser_page|test_server))\b"
+    r"\b(subprocess|multiprocessing|os\.fork|chromium|diff\.repository|docs\.sessions|lsp\.client|mcp\.client|playground\.(browser_page|test_server))\b"
 )
 """Words in files that start processes. A file with such a word has no quick tests."""
 

@@ -16,6 +16,7 @@ from tests.waiting import HANG_S
 HEAVY = {
     "sympy", "networkx", "graphviz", "pygraphviz", "rich", "lark", "jsonschema", "fastjsonschema", "numpy", "torch",
     "importlib.metadata", "asyncio", "http", "xml", "multiprocessing", "unittest",
+    "mcp", "anyio", "pydantic",
 }  # fmt: skip
 
 

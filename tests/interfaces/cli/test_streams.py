@@ -47,6 +47,7 @@ QUICK: Final[dict[str, list[tuple[str, ...]]]] = {
     "lint": [("hide.tltl",)],
     "list": [("codes",), ("targets", "--json")],
     "lsp": [()],
+    "mcp": [()],
     "mine": [("trace.csv", "--against", "bad.csv"), ("trace.csv", "--against", "bad.csv", "-o", "mined.tltl"), ("-",)],
     "monitor": [("hide.tltl", "trace.csv"), ("hide.tltl", "trace.csv", "--json"), ("hide.tltl", "-")],
     "new": [("game",)],
@@ -220,8 +221,8 @@ def test_closed_streams_lose_no_result(
     arguments: tuple[str, ...], inputs: Path, tmp_path: Path, run_here: Runner
 ) -> None:
     run_open = run_here
-    if arguments[:1] == ("lsp",):
-        pytest.importorskip("pygls")
+    if arguments in (("lsp",), ("mcp",)):
+        pytest.importorskip({"lsp": "pygls", "mcp": "mcp"}[arguments[0]])
         # The server reads from the descriptor of standard input.
         run_open = _run
     # The first arguments of each command are run with standard error closed, too.

@@ -37,6 +37,7 @@ BUILT_IN: Final = {
     "breaking": "Report changes that break a game or a recorded baseline.",
     "conformance": "Write test cases for the monitors of an engine.",
     "lsp": "Start a language server for editors.",
+    "mcp": "Start a server for coding agents.",
     "serve": "Serve a page for trying out specs.",
     "list": "List predicates, targets, games, levels or error codes.",
     "explain": "Explain a spec or an error code.",
@@ -44,7 +45,17 @@ BUILT_IN: Final = {
     "completion": "Print the completion script of a shell.",
 }
 
-BOUNDED: Final = frozenset(BUILT_IN) - {"compile", "mine", "monitor", "watch", "lsp", "serve", "new", "completion"}
+BOUNDED: Final = frozenset(BUILT_IN) - {
+    "compile",
+    "mine",
+    "monitor",
+    "watch",
+    "lsp",
+    "mcp",
+    "serve",
+    "new",
+    "completion",
+}
 """Built-in commands whose whole run is limited by ``--max-cpu`` and ``--max-memory``.
 
 The commands that are left out here limit only parts of their work.
