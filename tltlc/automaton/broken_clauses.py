@@ -32,6 +32,7 @@ def with_broken_clauses(fspa: Fspa, spec: Spec, state_budget: int) -> Fspa:
     of these traces. In large automata, only some of the traces are looked at.
     """
     clauses = tuple(part.text for part in spec.parts)
+    found: dict[int, tuple[BrokenClause, ...]]
     if len(clauses) == 1:
         found = {index: (BrokenClause(0, edge.guard.primes),) for index, edge in _breaking_edges(fspa)}
     else:

@@ -67,8 +67,9 @@ class TraceVerdict:
     ``remaining`` is the label of the last state: the formula that remains to be satisfied. ``cause``
     is None if the trace is accepted. ``samples`` is the number of samples in the trace; it is greater
     than ``outcome.steps`` if the trace is judged as an episode and the episode ends earlier.
-    ``unmet`` says in words what remained to be satisfied before the sample that broke the spec, or at the end of
-    the trace if no sample broke it. ``details`` is None unless the caller of :class:`~tltlc.tools.judge.judge.Judge` asked for details.
+    ``unmet`` says in words what remained to be satisfied before the sample that broke the spec, or at the
+    end of the trace if no sample broke it. ``details`` is None unless the caller of
+    :class:`~tltlc.tools.judge.judge.Judge` asked for details.
     """
 
     outcome: TraceOutcome
