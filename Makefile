@@ -91,7 +91,7 @@ generate: $(VENV)/.installed-dev
 	$(BIN)/python -m tltlc.grammar.tables
 	$(BIN)/python -m tltlc.artefact.generate
 	rm -rf docs/images/new && $(BIN)/tltlc new docs/images/new --game python
-	$(BIN)/tltlc render docs/images/new/hall.tltl -o docs/images/leave.svg
+	$(BIN)/tltlc render docs/images/new/hall.tltl --notation english -o docs/images/leave.svg
 	rm -rf docs/images/new && $(BIN)/tltlc new docs/images/new
 	$(BIN)/tltlc render docs/images/new/first_level.tltl --notation english -o docs/images/leave_with_key.svg
 	rm -rf docs/images/new

@@ -14,6 +14,8 @@ from tltlc.diagnostics.diagnostic import TltlError
 from tltlc.interfaces.cli.command_line import RUNTIME_COMMANDS, cli
 
 FOLDER: Final = "commands"
+REFERENCE: Final = "commands.md"
+"""The URI of the page that lists the commands."""
 
 
 def names() -> list[str]:
@@ -34,9 +36,9 @@ def pages() -> Iterator[Page]:
 
 
 def with_links(table: str) -> str:
-    """Link each command in a Markdown table to its page; the links are relative to the README."""
+    """Link each command in the tables of ``docs/commands.md`` to its page."""
     pattern = "|".join(map(re.escape, names()))
-    return re.sub(rf"^\| (`tltlc ({pattern})\b[^`]*`) \|", rf"| [\1](docs/{FOLDER}/\2.md) |", table, flags=re.MULTILINE)
+    return re.sub(rf"^\| (`tltlc ({pattern})\b[^`]*`) \|", rf"| [\1]({FOLDER}/\2.md) |", table, flags=re.MULTILINE)
 
 
 def _context() -> click.Context:

@@ -15,11 +15,11 @@ _EXAMPLE: Final = re.compile(r"(?:^>>> .*\n?(?:^\S.*\n?)*)+", re.MULTILINE)
 _EMPTY: Final = inspect.Parameter.empty
 
 
-def page(lead: str) -> Page:
-    """Return the page: ``lead``, a section of the README, then the functions, then the classes."""
+def page() -> Page:
+    """Return the page: the functions, then the classes."""
     values = {name: getattr(tltlc, name) for name in tltlc.__all__ if not name.startswith("_")}
     functions = {name: value for name, value in values.items() if not isinstance(value, type)}
-    lines = [lead.rstrip(), "", "## Functions", ""]
+    lines = ["# Python, in full", "", "The functions and values of `import tltlc`.", "", "## Functions", ""]
     for name, value in functions.items():
         lines += _entry(f"tltlc.{name}", _signature(f"tltlc.{name}", value), value)
     lines += ["## Values", ""]
@@ -28,7 +28,7 @@ def page(lead: str) -> Page:
             lines += _entry(f"tltlc.{name}", _fields(value), value)
             for method, function in _methods(value):
                 lines += ["```python", _signature(method, function), "```", "", _prose(function), ""]
-    return Page(URI, "\n".join(lines), "README.md")
+    return Page(URI, "\n".join(lines), "docs/python.md")
 
 
 def _entry(name: str, head: str, value: Any) -> list[str]:

@@ -14,7 +14,7 @@ from mkdocs.config.defaults import MkDocsConfig
 from mkdocs.structure.files import File, Files
 from mkdocs.structure.pages import Page as SitePage
 
-from docs_site import commands, diagnostics, links, readme, sources
+from docs_site import commands, diagnostics, facade, links, readme, sources
 from docs_site.page import ROOT, Page, read
 from tltlc.grammar.pygments_lexer import TltlLexer
 
@@ -69,6 +69,7 @@ def on_page_markdown(markdown: str, page: SitePage, config: MkDocsConfig, files:
     uri = page.file.src_uri
     origin = generated_pages()[uri].origin if uri in generated_pages() else f"docs/{uri}"
     text = markdown.replace(_LINT_RULES, diagnostics.lint_rules()) if _LINT_RULES in markdown else markdown
+    text = commands.with_links(text) if uri == commands.REFERENCE else text
     text = _ROW.sub(lambda row: _CODE.sub(_unescape_bars, row[0]), _COMMENT.sub("", text))
     return links.to_pages(text, origin, uri, homes())
 
@@ -82,7 +83,7 @@ def _unescape_bars(code: re.Match[str]) -> str:
 def generated_pages() -> dict[str, Page]:
     """Return the pages that are not files of ``docs/``, by URI."""
     unchanged = [Page(uri, read(path), path) for path, uri in UNCHANGED.items() if path.endswith(".md")]
-    pages = [*readme.pages(), *commands.pages(), *diagnostics.pages(), *sources.pages(), *unchanged]
+    pages = [*readme.pages(), facade.page(), *commands.pages(), *diagnostics.pages(), *sources.pages(), *unchanged]
     return {page.uri: page for page in pages}
 
 

@@ -101,7 +101,7 @@ def test_the_environment_of_the_readme_runs_with_the_files_of_the_page_on_games(
     for block in blocks(DOCS / "games.md"):
         if name := re.match(r"(?:#|//) (lake\S+)\n", block.text):
             (tmp_path / name[1]).write_text(block.text)
-    program = next(block.text for block in blocks(DOCS.parent / "README.md") if "TltlEnv" in block.text)
+    program = next(block.text for block in blocks(DOCS / "guides" / "environments.md") if "TltlEnv" in block.text)
     (tmp_path / "program.py").write_text(program)
     assert shell.run("python program.py") == "F at_goal & G !in_hole 0.0\n"
 

@@ -176,8 +176,8 @@ def test_the_search_works_without_a_server(site: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "expected"),
     [
-        ("[a](../../README.md#the-commands)", "[a](../commands/index.md#the-commands)"),
-        ("[a](../../README.md#the-language-by-example)", "[a](../index.md#the-language-by-example)"),
+        ("[a](../../README.md#installing)", "[a](../installing.md#installing)"),
+        ("[a](../../README.md#try-it)", "[a](../index.md#try-it)"),
         ("[a](../../CHANGELOG.md)", "[a](../changelog.md)"),
         ("[a](../language.md#a-file) and [b](#here)", "[a](../language.md#a-file) and [b](#here)"),
         ("[`a`](../../tltlc/diagnostics/pages/TLT0305.md)", "[`a`](../diagnostics/TLT0305.md)"),

@@ -1,4 +1,4 @@
-"""The examples of the README match the behaviour of the tool."""
+"""The examples of the README, and of the pages on commands and on Python, match the behaviour of the tool."""
 
 from __future__ import annotations
 
@@ -10,44 +10,47 @@ from tests.interfaces.cli.conftest import ROOT
 from tltlc.interfaces.cli.command_line import BUILT_IN
 
 README = (ROOT / "README.md").read_text()
+SPEC = re.findall(r"```tltl\n(.*?)```", README, re.DOTALL)[0]
 
 
-def test_specs_of_the_readme_compile_and_pass(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
-    specs = re.findall(r"```tltl\n(.*?)```", README, re.DOTALL)
-    assert len(specs) == 2
-    for text in specs:
-        Path("readme.tltl").write_text(text)
-        outcome = tltlc("check", "readme.tltl")
+def test_the_spec_of_the_readme_is_right(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
+    Path("leave.tltl").write_text(SPEC)
+    for command in ("check", "lint"):
+        outcome = tltlc(command, "leave.tltl")
         assert (outcome.status, "nothing to report" in outcome.err) == (0, True), outcome.err
-        assert tltlc("test", "readme.tltl").status == 0
 
 
-def test_the_error_message_of_the_readme_is_current(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
-    example = re.search(r"```\n(error.*?)```", README, re.DOTALL)
-    assert example
-    before = "import stealth\nentity chest\n\n\n\n\n\nspec near_it {\n"
-    Path("sneak.tltl").write_text(before + "    keep near(chest, close = 3 s)\n}\n")
-    assert tltlc("check", "sneak.tltl").err == example[1]
+def test_the_verdict_of_the_readme_is_current(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
+    Path("leave.tltl").write_text(SPEC)
+    Path("run.csv").write_text("has_key,at_door,on_spikes\n0,0,0\n1,0,0\n1,0,1\n1,1,0\n")
+    shown = re.search(r"```text\n(.*?)```", README, re.DOTALL)
+    assert shown
+    assert tltlc("monitor", "leave.tltl", "run.csv").out.endswith(f"\n{shown[1]}")
 
 
-def test_the_python_example_of_the_readme_runs(capsys, monkeypatch) -> None:  # type: ignore[no-untyped-def]
+def test_no_table_of_the_readme_has_more_than_ten_rows() -> None:
+    tables = re.findall(r"(?:^\|.*\n)+", README, re.MULTILINE)
+    assert tables
+    assert max(table.count("\n") - 2 for table in tables) <= 10
+
+
+def test_the_python_example_runs(capsys, monkeypatch) -> None:  # type: ignore[no-untyped-def]
     monkeypatch.chdir(ROOT)
-    program = re.search(r"```python\n(.*?)```", README, re.DOTALL)
+    program = re.search(r"```python\n(.*?)```", (ROOT / "docs" / "python.md").read_text(), re.DOTALL)
     assert program
     exec(program[1], {})
     assert capsys.readouterr().out.startswith("3 ['")
 
 
-def test_the_readme_names_every_built_in_command() -> None:
+def test_the_page_on_commands_names_every_built_in_command() -> None:
+    page = (ROOT / "docs" / "commands.md").read_text()
     for command in BUILT_IN:
-        assert re.search(rf"`tltlc {command}[ `]", README), command
+        assert re.search(rf"`tltlc {command}[ `]", page), command
 
 
 def test_the_picture_of_the_readme_is_current(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
-    spec = re.search(r"```tltl\n(.*?)```", README, re.DOTALL)
-    assert spec
-    Path("hall.tltl").write_text(spec[1])
-    drawn = tltlc("render", "hall.tltl", "-t", "svg").out
+    Path("hall.tltl").write_text(SPEC)
+    drawn = tltlc("render", "hall.tltl", "--notation", "english", "-t", "svg").out
     assert texts_and_colours((ROOT / "docs/images/leave.svg").read_text()) == texts_and_colours(drawn)
 
 
