@@ -229,6 +229,34 @@ def test_the_plan_of_an_example_is_found_in_its_trace(tltlc: Run, inside: Path, 
     assert [clauses.index(step) for step in order] == sorted(clauses.index(step) for step in order)
 
 
+def test_all_names_after_against_are_counterexamples(tltlc: Run, recorded: Path) -> None:
+    good, bad = ([str(path) for path in sorted(Path(folder).iterdir())] for folder in ("good", "bad"))
+    expected = tltlc("mine", "good", "--against", "bad", "--json")
+    for arguments in (
+        [*good, "--against", *bad, "--json"],
+        ["--json", "--against", *bad, "--", *good],
+        [*good, "--against", bad[0], "--json", "--against", *bad[1:]],
+        ["--against", *bad, "--json", *good],
+    ):
+        outcome = tltlc("mine", *arguments)
+        assert outcome.out == expected.out
+        assert f"counterexamples: `{bad[0]}`, `{bad[1]}`, `{bad[2]}` and 21 more\n" in outcome.err
+    assert "counterexamples:" not in tltlc("mine", *good, "--against=bad").err
+    document = json.loads(tltlc("mine", "--against=bad", *good[:2], "--json").out)
+    assert (document["traces"], document["counterexamples"]) == (2, 24)
+
+
+def test_against_leaves_a_trace_for_the_command(tltlc: Run, recorded: Path) -> None:
+    outcome = tltlc("mine", "--against", "bad", "good")
+    assert (outcome.status, outcome.out) == (2, "")
+    assert "there are no TRACES: --against takes all names after it. Write the TRACES before --against" in outcome.err
+    for arguments in (["good", "--against"], ["good", "--against", "--top", "3"], ["good", "--against", "--", "bad"]):
+        outcome = tltlc("mine", *arguments)
+        assert (outcome.status, outcome.out) == (2, "")
+        assert "option '--against' requires an argument" in outcome.err
+    assert "missing argument 'TRACES...'" in tltlc("mine", "--top", "3").err
+
+
 def test_one_trace_may_be_standard_input(process: Run, recorded: Path) -> None:
     text = Path("good/run_00.csv").read_bytes()
     outcome = process("mine", "-", "--against", "bad", "--json", stdin=text)

@@ -14,6 +14,7 @@ from tltlc.core.record import replace
 from tltlc.core.source import SourceFile
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.interfaces.cli import exits
+from tltlc.interfaces.cli.list_options import ListOption, ListOptionCommand
 from tltlc.interfaces.cli.numbers import FiniteRange, WholeRange
 from tltlc.interfaces.cli.paths import OutputPath, is_stdout
 from tltlc.interfaces.cli.report import Report
@@ -34,22 +35,26 @@ _TELL_EVERY_S: Final = 1.0
 
 
 @click.command(
+    cls=ListOptionCommand,
     epilog="""\b
 Examples:
-  tltlc mine good/ --against bad/                         columns are atoms, true or false
+  tltlc mine good/ --against bad/                         columns are atoms
+  tltlc mine good/*.csv --against bad/*.csv --top 3       all names after --against are counterexamples
   tltlc mine good/ --against bad/ --predicates game.tltl  atoms are computed from signals
   tltlc mine good/ --against bad/ --predicates stealth    with the library `stealth`
   tltlc mine run_*.csv --predicates game.tltl -o mined.tltl --top 3
   tltlc mine good/ --against bad/ --min-support 0.9 --time 10 --json
-"""
+""",
 )
 @click.argument("traces", metavar="TRACES...", nargs=-1, required=True)
 @click.option(
     "--against",
     "counterexamples",
-    metavar="TRACES",
+    metavar="TRACES...",
     multiple=True,
-    help="Counterexamples: traces of failed or wrong play, which specs should reject. A file or a folder (repeatable).",
+    cls=ListOption,
+    help="Counterexamples: traces of failed or wrong play, which specs should reject. Takes all files and folders up "
+    "to the next option or to `--`.",
 )
 @click.option(
     "--predicates",
@@ -114,6 +119,7 @@ def command(
 
     from tltlc.io.writing import check_not_read
     from tltlc.resolve.options import ResolveOptions
+    from tltlc.tools.mine.column_diagnostics import first_names
     from tltlc.tools.mine.confirm import confirm
     from tltlc.tools.mine.evidence_reader import read_evidence
     from tltlc.tools.mine.proposal_text import proposals_text
@@ -137,6 +143,8 @@ def command(
         )
         if output is not None and not is_stdout(output):
             check_not_read(output)
+        if len(counterexamples) > 1:
+            report.say(f"counterexamples: {first_names(counterexamples)}")
         for line in _column_messages(words, predicates):
             report.say(line)
         report.add(diagnostics)
