@@ -295,6 +295,47 @@ def test_a_column_missing_in_one_trace_is_reported(tltlc: Run, recorded: Path) -
     assert "columns left out because they are not atoms: time, noticed (" in outcome.err
 
 
+def test_what_a_monitor_says_of_atoms_is_mined(tltlc: Run, inside: Path) -> None:
+    Path("game.tltl").write_text(
+        "entity key, exit\nsignal distance(e: entity): length in [0 m, 20 m]\nsignal seen: bool\n"
+        "predicate near(e: entity) in [-1, 1] = clamp(1 - distance(e) / 10 m, -1, 1)\n"
+        "spec s { reach near(key) then near(exit) avoid seen }\n"
+    )
+    rows = {
+        "good_1": "15,15,0 5,15,0 15,12,0 15,3,0",
+        "good_2": "15,2,0 15,15,0 2,15,0 9,9,0 14,12,0 15,1,0",
+        "bad_seen": "15,15,0 2,15,1 15,1,0",
+        "bad_order": "15,3,0 15,15,0 5,15,0 15,12,0",
+    }
+    for name, lines in rows.items():
+        trace = "\n".join(["distance(key),distance(exit),seen", *lines.split(), ""])
+        Path("trace.csv").write_text(trace)
+        document = json.loads(tltlc("monitor", "game.tltl", "trace.csv", "--json").out)
+        header = document["rows"][0]["atoms"]
+        atoms = [",".join(map(repr, row["atoms"].values())) for row in document["rows"]]
+        Path(f"{name}.csv").write_text("\n".join([",".join(header), *atoms, ""]))
+    outcome = tltlc(
+        "mine", "good_1.csv", "good_2.csv", "--against", "bad_seen.csv", "bad_order.csv", "-o", "mined.tltl"
+    )
+    assert outcome.err.splitlines()[1] == (
+        "columns of robustness values: near(key), near(exit), seen (an atom holds where its value is above 0)"
+    )
+    assert "reach (near(key) > 0) then (near(exit) > 0)\n         avoid seen > 0\n" in outcome.out
+    text = Path("mined.tltl").read_text(encoding="utf-8")
+    assert "signal near(x1: entity) in [-1, 1]\nsignal seen in [-1, 1]\n" in text
+    assert tltlc("test", "mined.tltl").status == 0
+
+
+def test_values_outside_the_range_of_robustness_in_one_trace_are_reported(tltlc: Run, inside: Path) -> None:
+    for number, low in enumerate((-1, -0.5, -7)):
+        Path(f"{number}.csv").write_text(f"alive,near\n0,{low}\n1,0.5\n")
+    outcome = tltlc("mine", "0.csv", "1.csv", "2.csv")
+    assert outcome.err == (
+        "warning[TLT0763]: `near` has values outside [-1, 1] in `2.csv`, so it is left out\n"
+        "  help: write robustness values there, too, or compute atoms from numbers with `--predicates LIB`\n"
+    )
+
+
 def test_columns_that_cannot_name_an_atom_are_reported(tltlc: Run, inside: Path) -> None:
     Path("run.csv").write_text("seen,x,the door\nfalse,1.5,false\ntrue,2.5,true\n")
     outcome = tltlc("mine", "run.csv")

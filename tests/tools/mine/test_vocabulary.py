@@ -6,10 +6,14 @@ import pytest
 
 from tltlc.core.source import SourceFile
 from tltlc.diagnostics.diagnostic import TltlError
+from tltlc.monitor.run import header
+from tltlc.pipeline import compile_text
 from tltlc.resolve.options import ResolveOptions
-from tltlc.tools.mine.columns import columns, common_columns
+from tltlc.tools.mine.columns import MONITOR_COLUMNS, ColumnKind, columns, common_columns
 from tltlc.tools.mine.trace_letters import TraceFile, consistent, read_traces
 from tltlc.tools.mine.vocabulary import signal_declarations, vocabulary_of_columns, vocabulary_of_library
+
+TRUTHS, SHARES, ROBUSTNESS, OTHER = ColumnKind
 
 LIBRARY = """\
 import spatial
@@ -30,7 +34,7 @@ def names(text: str, columns_of_traces: set[str]) -> list[str]:
 
 def test_columns_of_truth_values_are_atoms() -> None:
     kinds = columns(b"alive,health,near(s1)\ntrue,1,0\nfalse,0.5,1\n", "run.csv")
-    assert kinds == {"alive": True, "health": False, "near(s1)": True}
+    assert kinds == {"alive": TRUTHS, "health": SHARES, "near(s1)": TRUTHS}
     vocabulary = vocabulary_of_columns(kinds)
     assert [atom.name for atom in vocabulary.reader.atoms] == ["alive", "near(s1)"]
     assert (vocabulary.left_out, vocabulary.misnamed) == (("health",), frozenset())
@@ -40,21 +44,55 @@ def test_json_lines_are_read_like_csv() -> None:
     kinds = columns(
         b'{"alive": true, "health": 0.5, "name": "x"}\n\n{"alive": 0, "health": 1, "late": true}\n', "run.csv"
     )
-    assert kinds == {"alive": True, "health": False}
+    assert kinds == {"alive": TRUTHS, "health": SHARES}
     assert columns(b'{"alive": true, "doors": [1], "name": "x"}\n', "run.csv") == {
-        "alive": True,
-        "doors": False,
-        "name": False,
+        "alive": TRUTHS,
+        "doors": OTHER,
+        "name": OTHER,
     }
 
 
 def test_only_columns_of_all_traces_count() -> None:
-    assert common_columns([{"a": True, "b": True, "c": True}, {"c": True, "b": False}]) == {"b": False, "c": True}
+    assert common_columns([{"a": TRUTHS, "b": TRUTHS, "c": TRUTHS}, {"c": TRUTHS, "b": OTHER}]) == {
+        "b": OTHER,
+        "c": TRUTHS,
+    }
+
+
+def test_columns_of_robustness_values_are_atoms_above_0() -> None:
+    first = b"near(s1),near(s2),alive,health,stick,speed\n"
+    kinds = common_columns(
+        [
+            columns(first + b"-0.5,1,true,0.5,-1,-1\n0.25,1,false,1,1,1.5\n", "run.csv"),
+            columns(first + b"0.5,0.5,1,0,0,0\n", "other.csv"),
+        ]
+    )
+    assert [*kinds.values()] == [ROBUSTNESS, ROBUSTNESS, TRUTHS, SHARES, ROBUSTNESS, OTHER]
+    vocabulary = vocabulary_of_columns(kinds)
+    assert {atom.name for atom in vocabulary.reader.atoms} == {"near(s1) > 0", "near(s2) > 0", "alive", "stick > 0"}
+    assert (vocabulary.robust, vocabulary.left_out) == (("near(s1)", "near(s2)", "stick"), ("health", "speed"))
+    trace = TraceFile("run.csv", first + b"-0.5,1,true,0.5,0,-1\n0.25,0,false,1,0.01,1.5\n")
+    ((read,), _) = read_traces([trace], vocabulary)
+    assert read.letters == ({"near(s2) > 0", "alive"}, {"near(s1) > 0", "stick > 0"})
+    assert names("signal x in [-1, 1]\nspec s = F x > 0", {"x"}) == ["x > 0"]
+
+
+@pytest.mark.parametrize("value", ["-1.0000001", "nan", "inf", "", "x", "-1e400"])
+def test_other_values_are_no_robustness(value: str) -> None:
+    assert columns(f'a,b\n-0.5,"{value}"\n'.encode(), "run.csv") == {"a": ROBUSTNESS, "b": OTHER}
+
+
+def test_all_atoms_of_a_monitor_are_robustness_values() -> None:
+    (fspa,) = compile_text("signal x in [0, 1]\nsignal seen: bool\nspec s { reach x > 0 or seen }")
+    assert header(fspa) == (*MONITOR_COLUMNS, *(atom.name for atom in fspa.atoms))
+    row = ",".join((*MONITOR_COLUMNS, "alive", "seen", "speed"))
+    kinds = common_columns([columns(f"{row}\n1,0,pending,0,-1,0.5,1,2\n".encode(), "run.csv")])
+    assert [*kinds.values()] == [OTHER] * 5 + [ROBUSTNESS, ROBUSTNESS, OTHER]
 
 
 @pytest.mark.parametrize("column", ["reach", "F", "2fast", "a b", "near(s1", "near()", "near(2)", "s1 > 2", ""])
 def test_columns_that_cannot_name_an_atom_are_left_out(column: str) -> None:
-    vocabulary = vocabulary_of_columns({"alive": True, column: True})
+    vocabulary = vocabulary_of_columns({"alive": TRUTHS, column: TRUTHS})
     assert [atom.name for atom in vocabulary.reader.atoms] == ["alive"]
     assert (vocabulary.left_out, vocabulary.misnamed) == ((column,), {column})
 
@@ -63,7 +101,7 @@ def test_signals_are_declared_once_with_the_entities_that_they_are_about() -> No
     signals = [("near", ("s1", "s2")), ("near", ("s2", "s3")), ("alive", ())]
     expected = "entity s1, s2, s3\nsignal near(x1: entity, x2: entity): bool\nsignal alive: bool\n"
     assert signal_declarations(signals) == expected
-    columns_of_traces = dict.fromkeys(("alive", "near(s1, s2)", "near(s2, s3)"), True)
+    columns_of_traces = dict.fromkeys(("alive", "near(s1, s2)", "near(s2, s3)"), TRUTHS)
     assert vocabulary_of_columns(columns_of_traces).library.text == expected
 
 
@@ -79,7 +117,7 @@ def test_values_of_enums_are_atoms() -> None:
 
 def test_a_duplicate_column_is_reported() -> None:
     kinds = columns(b"a,a\ntrue,false\n", "run.csv")
-    assert kinds == {"a": True}
+    assert kinds == {"a": TRUTHS}
     with pytest.raises(TltlError) as raised:
         read_traces([TraceFile("run.csv", b"a,a\ntrue,false\n")], vocabulary_of_columns(kinds))
     (diagnostic,) = raised.value.diagnostics
@@ -89,13 +127,16 @@ def test_a_duplicate_column_is_reported() -> None:
 @pytest.mark.parametrize(
     ("columns_of_traces", "title"),
     [
-        ({"F": True, "then": True, "x y": True, "speed": False}, "the columns `F`, `then` and `x y` contain only"),
-        ({"F": True}, "the column `F` contains only"),
-        ({"speed": False}, "no column of the traces contains only"),
+        (
+            {"F": TRUTHS, "then": TRUTHS, "x y": TRUTHS, "speed": SHARES},
+            "the columns `F`, `then` and `x y` contain only",
+        ),
+        ({"F": TRUTHS}, "the column `F` contains only"),
+        ({"speed": OTHER}, "no column of the traces contains only"),
         ({}, "no column of the traces contains only"),
     ],
 )
-def test_the_error_says_why_there_is_no_atom(columns_of_traces: dict[str, bool], title: str) -> None:
+def test_the_error_says_why_there_is_no_atom(columns_of_traces: dict[str, ColumnKind], title: str) -> None:
     with pytest.raises(TltlError) as raised:
         vocabulary_of_columns(columns_of_traces)
     (diagnostic,) = raised.value.diagnostics
@@ -104,7 +145,7 @@ def test_the_error_says_why_there_is_no_atom(columns_of_traces: dict[str, bool],
 
 def test_columns_that_cannot_be_declared_together_are_left_out() -> None:
     vocabulary = vocabulary_of_columns(
-        dict.fromkeys(("s1", "near(s1)", "at(a)", "at(a, b)", "to(a, b)", "a(c)", "b"), True)
+        dict.fromkeys(("s1", "near(s1)", "at(a)", "at(a, b)", "to(a, b)", "a(c)", "b"), TRUTHS)
     )
     assert [atom.name for atom in vocabulary.reader.atoms] == ["s1", "at(a)", "b"]
 

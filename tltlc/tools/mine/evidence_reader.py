@@ -10,7 +10,7 @@ from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.monitor.sample_times import times_name
 from tltlc.resolve.options import ResolveOptions
 from tltlc.tools.mine.column_diagnostics import TraceColumns, odd_columns
-from tltlc.tools.mine.columns import columns, common_columns
+from tltlc.tools.mine.columns import ColumnKind, columns, common_columns
 from tltlc.tools.mine.evidence import Evidence, LabelledTrace
 from tltlc.tools.mine.mutants import with_mutants
 from tltlc.tools.mine.trace_clock import clock_declaration, trace_clock
@@ -36,7 +36,7 @@ def read_evidence(
 
     ``good`` are the traces, and ``bad`` the counterexamples. If ``bad`` is empty, counterexamples are
     generated. The atoms are predicates of ``library``; without a library, they are the columns that
-    have only the values `true` and `false`.
+    have only the values `true` and `false`, and ``column > 0`` for columns of robustness values.
 
     Raises:
         TltlError: the errors of :func:`~tltlc.tools.mine.vocabulary.vocabulary_of_library`,
@@ -51,7 +51,7 @@ def read_evidence(
         if not all_columns[-1].columns:
             check_trace(file)
     common = common_columns([trace.columns for trace in all_columns])
-    odd = odd_columns(all_columns, truths=library is None)
+    odd = odd_columns(all_columns, common if library is None else None)
     warnings = tuple(group.warning() for group in odd)
     try:
         vocabulary = (
@@ -79,11 +79,11 @@ def read_evidence(
     return vocabulary, evidence, (*warnings, *notices, *bad_notices, *contradictions)
 
 
-def _clock(files: Sequence[TraceFile], columns: Mapping[str, bool]) -> str:
+def _clock(files: Sequence[TraceFile], columns: Mapping[str, ColumnKind]) -> str:
     """Return the declaration of the clock of traces without a library; empty if their times show none."""
     name = times_name(columns, ())
     # A column of true and false is a signal, whatever its name.
-    return "" if name is None or columns[name] else clock_declaration(trace_clock(files))
+    return "" if name is None or columns[name] == ColumnKind.TRUTHS else clock_declaration(trace_clock(files))
 
 
 def _contradictions(

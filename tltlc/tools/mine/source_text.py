@@ -10,6 +10,7 @@ from typing import Final
 from tltlc.automaton.compare import Letter
 from tltlc.automaton.text import formula_text
 from tltlc.core.record import replace
+from tltlc.expression.tree import SignalValue, nodes
 from tltlc.tools.mine.bits import Bits
 from tltlc.tools.mine.confirm import Proposal, ProposalVerdict
 from tltlc.tools.mine.evidence import Evidence
@@ -56,10 +57,12 @@ def declarations(proposals: Sequence[Proposal], vocabulary: MiningVocabulary, im
     """
     used = {atom.name: atom for proposal in proposals for atom in proposal.fspa.atoms}
     if import_text is None:
-        atoms = [atom for atom in vocabulary.reader.atoms if atom.name in used]
+        read = {node.name for atom in used.values() for node in nodes(atom.expression) if isinstance(node, SignalValue)}
+        signals = [signal for signal in vocabulary.reader.signals if signal.name in read]
         # Signals with arguments come first, after the entities that are their arguments.
         return clock_declaration(vocabulary.reader.clock_s) + signal_declarations(
-            (atom.base, atom.arguments) for atom in sorted(atoms, key=lambda atom: not atom.arguments)
+            [(signal.base, signal.arguments) for signal in sorted(signals, key=lambda signal: not signal.arguments)],
+            {signal.base for signal in signals if signal.type != "bool"},
         )
     arguments = {argument for atom in used.values() for argument in atom.arguments}
     entities = [name for name in vocabulary.entities if name in arguments]

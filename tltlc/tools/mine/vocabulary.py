@@ -1,7 +1,8 @@
 """Find the atoms of traces.
 
 With a library, the atoms are its predicates, applied to entities. Without one, they are the columns
-that have only the values true and false. In both cases, a source text declares the atoms, and the
+that have only the values true and false, and the columns of robustness values: there an atom is a
+comparison, such as ``near(s1) > 0``. In both cases, a source text declares the atoms, and the
 compiler resolves them.
 """
 
@@ -29,6 +30,7 @@ from tltlc.resolve.resolution import resolve_atoms
 from tltlc.resolve.scope import Binding
 from tltlc.resolve.spec import Atom, Vocabulary
 from tltlc.tools.mine.column_diagnostics import first_names
+from tltlc.tools.mine.columns import ColumnKind
 
 _WORD: Final = re.compile(r"[A-Za-z_][\w.]*\Z", re.ASCII)
 _BRACKETS_AND_COMMAS: Final = re.compile(r"\s*([(),])\s*")
@@ -42,15 +44,17 @@ class MiningVocabulary:
 
     ``library`` is a source text that declares all names. ``entities`` are the entities of the
     traces that the user's library does not declare. ``reader`` is an automaton that accepts every
-    trace and has all atoms; it serves only to compute their values. ``left_out`` lists the columns
-    that are not atoms. ``misnamed`` has those of them whose values are true and false, but whose
-    names no atom can have. ``unread_count`` is the number of possible atoms that are left out
-    because there are too many.
+    trace and has all atoms; it serves only to compute their values. ``robust`` lists the columns of
+    robustness values that are atoms. ``left_out`` lists the columns that are not atoms.
+    ``misnamed`` has those of them whose values could be those of an atom, but whose names no atom
+    can have. ``unread_count`` is the number of possible atoms that are left out because there are
+    too many.
     """
 
     library: SourceFile
     entities: tuple[str, ...]
     reader: Fspa
+    robust: tuple[str, ...] = ()
     left_out: tuple[str, ...] = ()
     misnamed: frozenset[str] = frozenset()
     unread_count: int = 0
@@ -104,28 +108,42 @@ def _no_readable_atom(library: SourceFile, vocabulary: Vocabulary | None, column
     return TltlError([Diagnostic("TLT0760", title, help=help_)])
 
 
-def vocabulary_of_columns(columns: Mapping[str, bool], clock: str = "") -> MiningVocabulary:
-    """Return a vocabulary in which each column of true and false is an atom.
+def vocabulary_of_columns(columns: Mapping[str, ColumnKind], clock: str = "") -> MiningVocabulary:
+    """Return a vocabulary in which each column of true and false, or of robustness values, is an atom.
 
-    ``columns`` maps the name of each column to whether all its values are true or false. ``clock`` is the
-    declaration of the clock; empty without one.
+    ``columns`` maps the name of each column to its kind. ``clock`` is the declaration of the clock; empty
+    without one.
 
     Raises:
         TltlError: TLT0760, no column is an atom.
     """
-    truths = [name for name, is_truth in columns.items() if is_truth]
-    names, unread = truths[:_MOST], frozenset(truths[_MOST:])
+    kinds = (ColumnKind.TRUTHS, ColumnKind.ROBUSTNESS)
+    candidates = [name for name, kind in columns.items() if kind in kinds]
+    names, unread = candidates[:_MOST], frozenset(candidates[_MOST:])
     simple = {name: None for name in names if _WORD.match(name) and _declares(f"signal {name}: bool\n")}
     calls = _calls(names, simple)
-    signals = signal_declarations([*calls.values(), *((name, ()) for name in simple)])
+    robust = {name for name in names if columns[name] == ColumnKind.ROBUSTNESS}
+    signals = signal_declarations(
+        [*calls.values(), *((name, ()) for name in simple)],
+        {calls[name][0] if name in calls else name for name in robust},
+    )
     library = SourceFile("<traces>", clock + signals, "text")
-    readable = _readable_atoms(_module(library), [name for name in names if name in simple or name in calls], columns)
+    texts = {name: f"{name} > 0" if name in robust else name for name in names if name in simple or name in calls}
+    readable = _readable_atoms(_module(library), [*texts.values()], columns)
     if readable is None:
         raise _no_columns(names)
     reader = _reader(readable)
-    atom_names = {atom.name for atom in reader.atoms}
-    left_out = tuple(name for name in columns if name not in atom_names and name not in unread)
-    return MiningVocabulary(library, (), reader, left_out, frozenset(left_out).intersection(names), len(unread))
+    signal_names = {signal.name for signal in reader.signals}
+    left_out = tuple(name for name in columns if name not in signal_names and name not in unread)
+    return MiningVocabulary(
+        library=library,
+        entities=(),
+        reader=reader,
+        robust=tuple(name for name in columns if name in robust & signal_names),
+        left_out=left_out,
+        misnamed=frozenset(left_out).intersection(names),
+        unread_count=len(unread),
+    )
 
 
 def _no_columns(truths: Sequence[str]) -> TltlError:
@@ -307,12 +325,13 @@ def _call(column: str) -> tuple[str, tuple[str, ...]] | None:
     return (name, arguments) if arguments and all(map(_WORD.match, (name, *arguments))) else None
 
 
-def signal_declarations(signals: Iterable[tuple[str, tuple[str, ...]]]) -> str:
-    """Return declarations of `bool` signals, and of the entities that are their arguments.
+def signal_declarations(signals: Iterable[tuple[str, tuple[str, ...]]], robust: Collection[str] = ()) -> str:
+    """Return declarations of signals, and of the entities that are their arguments.
 
-    Each of ``signals`` is a name with its arguments. For ``("near", ("s1",))``, the result is
-    ``entity s1`` and ``signal near(x1: entity): bool``. Signals with the same name must have the same
-    number of arguments, and get one declaration.
+    The signals are `bool`, but robustness values in [-1, 1] if their names are in ``robust``. Each
+    of ``signals`` is a name with its arguments. For ``("near", ("s1",))``, the result is ``entity
+    s1`` and ``signal near(x1: entity): bool``. Signals with the same name must have the same number
+    of arguments, and get one declaration.
     """
     lengths: dict[str, int] = {}
     entities: dict[str, None] = {}
@@ -320,7 +339,9 @@ def signal_declarations(signals: Iterable[tuple[str, tuple[str, ...]]]) -> str:
         lengths[name] = len(arguments)
         entities |= dict.fromkeys(arguments)
     text = f"entity {', '.join(entities)}\n" if entities else ""
-    return text + "".join(f"signal {name}{_parameters(length)}: bool\n" for name, length in lengths.items())
+    for name, length in lengths.items():
+        text += f"signal {name}{_parameters(length)}{' in [-1, 1]' if name in robust else ': bool'}\n"
+    return text
 
 
 def _parameters(count: int) -> str:

@@ -169,7 +169,9 @@ def command(
 
 
 def _column_messages(words: MiningVocabulary, predicates: str | None) -> Iterator[str]:
-    """Yield messages about the columns of the traces that the search ignores, because they are not atoms."""
+    """Yield messages about the columns that the search takes as robustness values, and those that are not atoms."""
+    if words.robust:
+        yield f"columns of robustness values: {', '.join(words.robust)} (an atom holds where its value is above 0)"
     misnamed = [name for name in words.left_out if name in words.misnamed]
     not_atoms = [name for name in words.left_out if name not in words.misnamed]
     if not_atoms:
