@@ -69,10 +69,12 @@ def test_messages_are_in_the_machine_readable_formats(tltlc) -> None:  # type: i
 
 
 def test_a_plan_of_one_level_is_written(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
-    assert tltlc("check", "--level", "navigation:v2", "--plan", "plan.png").status == 1
+    written: Outcome = tltlc("check", "--level", "navigation:v2", "--plan", "plan.png")
+    assert (written.status, written.err.splitlines()[-1]) == (1, "wrote plan.png")
     assert Path("plan.png").read_bytes().startswith(b"\x89PNG")
     several_variants: Outcome = tltlc("check", "--level", "cover_and_hide", "--plan", "several.png")
     assert several_variants.status == 2 and not Path("several.png").exists()
+    assert "wrote" not in several_variants.err
     count = len(variants("cover_and_hide"))
     assert f"--plan needs one level and variant, e.g. `--level navigation:v2`, not {count}" in several_variants.err
 

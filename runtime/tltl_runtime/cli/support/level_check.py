@@ -40,6 +40,7 @@ def command(
     checked = check_levels(levels, inputs, settings, report, sensors)
     if plan is not None and checked:
         _draw(plan, checked)
+        report.say(f"wrote {plan}")
 
 
 def check_levels(
