@@ -206,6 +206,24 @@ def test_frames_show_the_view_and_the_strip(episode: Episode) -> None:
     assert (again == other)[-STRIP:].all()
 
 
+@pytest.mark.parametrize(
+    ("health", "bar", "others"), [(1.0, "_GREEN", ("_RED",)), (0.5, "_RED", ("_GREEN",)), (0.0, "", ("_GREEN", "_RED"))]
+)
+def test_the_health_bar_of_a_film_is_green_until_health_is_low(
+    episode: Episode, health: float, bar: str, others: tuple[str, ...]
+) -> None:
+    first = replace(episode.snapshots[0], health=health)
+    (frame,) = frames(replace(episode, snapshots=(first, *episode.snapshots[1:])), [0.0], "plan", (320, 240))
+
+    def pixels(name: str) -> int:
+        colour = [int(getattr(film, name)[place : place + 2], 16) for place in (1, 3, 5)]
+        # The lines below the bars show the state in its own colour.
+        return int((frame[-STRIP : -STRIP + film._LINES[0]] == colour).all(axis=2).sum())
+
+    assert not any(map(pixels, others))
+    assert not bar or pixels(bar) > 100
+
+
 def test_a_small_film_shows_the_end(tltlc, recorded: Path, episode: Episode) -> None:  # type: ignore[no-untyped-def] # noqa: F811
     last = episode.snapshots[-1].time
     before, after = frames(replace(episode, end="violation"), [last - 0.01, last], "plan", (320, 240))

@@ -17,6 +17,7 @@ from tltl_runtime.game.palette import state_colour
 from tltl_runtime.stealth.level import Point, StealthLevel
 from tltl_runtime.stealth.recordings.episode import Episode
 from tltl_runtime.stealth.rendering.camera import FilmView, View
+from tltl_runtime.stealth.rendering.hud import LOW_HEALTH
 from tltl_runtime.stealth.rendering.interpolation import interpolate
 from tltl_runtime.stealth.rendering.plan import BARRIERS, backdrop
 from tltl_runtime.stealth.rendering.render import Renderer
@@ -43,6 +44,7 @@ _LINES: Final = (25, 41)
 _PAPER: Final = "#0f172a"
 _PALE: Final = "#e2e8f0"
 _EMPTY: Final = "#334155"
+_AMBER: Final = "#f59e0b"
 _GREEN: Final = "#22c55e"
 _RED: Final = "#ef4444"
 MODES: Final = {"patrol": "#7f1d1d", "chase": "#ff0000", "search": "#f97316", "return": "#64748b"}
@@ -149,7 +151,10 @@ def _figure(draw: ImageDraw.ImageDraw, at: tuple[float, float], yaw: float, radi
 def _add_strip(
     view: Picture, episode: Episode, moment: Moment, font: ImageFont.FreeTypeFont, notation: Notation
 ) -> Picture:
-    """Add a strip below the view: time, progress, health, and what remains to be satisfied."""
+    """Add a strip below the view: time, progress, health, and what remains to be satisfied.
+
+    The bars have the colours that they have in the window of the game.
+    """
     height, width, _ = view.shape
     picture = Image.new("RGB", (width, height + STRIP), _PAPER)
     picture.paste(Image.fromarray(view), (0, 0))
@@ -158,7 +163,11 @@ def _add_strip(
     state = int(episode.states[row])
     top = height + 5
     draw.text((8, top), f"{shot.time:6.2f} s", _PALE, font)
-    bars = (("progress", float(episode.progress[row]), _GREEN), ("health", episode.snapshots[row].health, _RED))
+    health = episode.snapshots[row].health
+    bars = (
+        ("progress", float(episode.progress[row]), _AMBER),
+        ("health", health, _GREEN if health > LOW_HEALTH else _RED),
+    )
     words = sum(int(font.getlength(text)) + 3 * _GAP for text in ("progress", "health", episode.end))
     bar = max(2 * _GAP, min(_BAR, (width - _BARS_FROM - words) // 2))
     x = _BARS_FROM

@@ -12,6 +12,9 @@ from tltl_runtime.stealth.snapshot import Snapshot
 from tltl_runtime.stealth.world.player import DECISION
 from tltlc.api import Fspa, formula_text, label_text, replace
 
+LOW_HEALTH: Final = 0.5
+"""Up to this health, its bar is red; above, it is green."""
+
 KEYS: Final = ("WASD or arrows: walk   shift: sprint   C: crouch   space: jump", "V: view   R: again   Esc: stop")
 
 
@@ -21,7 +24,7 @@ def hud(snapshot: Snapshot, info: Mapping[str, Any], fspa: Fspa) -> Hud:
     ``info`` is that of the environment's last step or reset.
     """
     bars = (
-        Bar("health", snapshot.health, "good" if snapshot.health > 0.5 else "bad"),
+        Bar("health", snapshot.health, "good" if snapshot.health > LOW_HEALTH else "bad"),
         Bar("stamina", snapshot.player.stamina, "plain"),
         Bar("progress", info["progress"], "warn"),
     )
