@@ -4,6 +4,7 @@ import pytest
 
 from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.monitor.run import TraceOutcome
+from tltlc.tools.judge.measures import Measure
 from tltlc.tools.judge.summary import group_causes, group_text, summary_text, trace_text
 from tltlc.tools.judge.verdict import JudgedTrace, RejectionCause, TraceVerdict
 
@@ -64,6 +65,14 @@ def test_broken_clauses_come_first_and_then_the_most_frequent_cause() -> None:
         (None, "accepted: holding after 50 steps"),
         (RejectionCause("broken", 3, LAVA), "not accepted: breaks `avoid on_lava` at step 3 of 50"),
         (RejectionCause("broken", 3, ()), "not accepted: breaks the spec at step 3 of 50"),
+        (
+            RejectionCause("broken", 3, ("keep health > 20",), ("health > 20",), Measure("health", 12.3456, 7.7, "")),
+            "not accepted: breaks `keep health > 20` at step 3 of 50: health is 12.3",
+        ),
+        (
+            RejectionCause("broken", 3, ("keep all g in guards: near(g)",), ("near(g1)",)),
+            "not accepted: breaks `keep all g in guards: near(g)` at step 3 of 50: `near(g1)`",
+        ),
         (RejectionCause("blocked", 3, ("reach a",)), "not accepted: makes `reach a` impossible at step 3 of 50"),
         (RejectionCause("unfinished", 50, ("reach a",)), "not accepted: `reach a` is not met after 50 steps"),
         (

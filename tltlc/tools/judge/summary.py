@@ -143,12 +143,22 @@ def _verdict_text(verdict: TraceVerdict) -> str:
     if cause is None:
         return f"accepted: {outcome.verdict} after {steps}"
     if cause.kind in ("broken", "blocked"):
-        return f"not accepted: {_breaking_text(cause)} of {verdict.samples}"
+        return f"not accepted: {_breaking_text(cause)} of {verdict.samples}{_reason_text(cause)}"
     clauses = _list_text(cause.clauses)
     if cause.kind == "late":
         return f"not accepted: {clauses or 'the spec'} {_are(cause.clauses)} not met at the limit, after {steps}"
     left = f"{clauses} {_are(cause.clauses)} not met" if clauses else "it is too short"
     return f"not accepted: {left} after {steps}"
+
+
+def _reason_text(cause: RejectionCause) -> str:
+    """Return what was measured at the step, or the atoms that the clauses do not name; empty if they name all."""
+    measured = cause.measure
+    if measured is not None and measured.value is not None:
+        unit = f" {measured.unit}" if measured.unit else ""
+        return f": {measured.quantity} is {measured.value:.3g}{unit}"
+    unnamed = [atom for atom in cause.atoms if not any(atom in clause for clause in cause.clauses)]
+    return f": {_list_text(unnamed)}" if unnamed else ""
 
 
 def _breaking_text(cause: RejectionCause) -> str:
