@@ -6,7 +6,16 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tltl_runtime.support.number_text import column, count_text, number, percent, quantity_text, share, short_list
+from tltl_runtime.support.number_text import (
+    column,
+    count_text,
+    number,
+    percent,
+    quantity_text,
+    share,
+    short_list,
+    significant,
+)
 
 
 @pytest.mark.parametrize(
@@ -47,6 +56,7 @@ def test_minus_zero_is_shown_as_zero() -> None:
     ("value", "gap", "text"),
     [
         (14.06, 2.06, "14.1 m"),
+        (1234.4, 2.06, "1234 m"),
         (0.625, 1.0, "0.62 m"),
         (12.0004, 0.0004, "12.0004 m"),
         (0.0, 0.0, "0.00 m"),
@@ -55,6 +65,27 @@ def test_minus_zero_is_shown_as_zero() -> None:
 )
 def test_a_quantity_has_the_decimals_that_show_its_difference_if_any_do(value: float, gap: float, text: str) -> None:
     assert quantity_text(value, "m", gap) == text
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [
+        (0.0, "0.00"),
+        (-0.0, "0.00"),
+        (-1e-9, "0.00"),
+        (1.0, "1.00"),
+        (0.7149, "0.715"),
+        (-0.4164, "-0.416"),
+        (0.01234, "0.0123"),
+        (5.7, "5.70"),
+        (9.996, "10.0"),
+        (99.96, "100"),
+        (122.4, "122"),
+        (12345.0, "12,300"),
+    ],
+)
+def test_a_number_for_people_has_three_significant_digits(value: float, text: str) -> None:
+    assert significant(value) == text
 
 
 @pytest.mark.parametrize(("most", "text"), [(4, "a, b, c"), (3, "a, b, c"), (2, "a, b and 1 more")])

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import ceil, floor, inf
+from math import ceil, floor, inf, log10
 from textwrap import wrap
 from typing import Final
 
@@ -48,10 +48,10 @@ def count_text(count: int, total: int, noun: str = "", *, is_compared: bool = Fa
 def quantity_text(value: float, unit: str, gap: float = inf) -> str:
     """Return a measured number with its unit, such as ``0.62 m`` or ``14.1``.
 
-    There are at most two decimals, or as many as show a difference of ``gap``, up to six. A difference
-    that six decimals do not show needs no more of them.
+    There are at most two decimals and about three digits, or as many decimals as show a difference of
+    ``gap``, up to six. A difference that six decimals do not show needs no more of them.
     """
-    least = 2 if abs(value) < 10.0 else 1
+    least = 2 if abs(value) < 10.0 else 1 if abs(value) < 100.0 else 0
     decimals = next((places for places in range(least, 7) if round(gap, places) != 0.0), least)
     return f"{number(value, decimals)}{' ' * bool(unit)}{unit}"
 
@@ -60,6 +60,25 @@ def interval_text(interval: tuple[float, float]) -> str:
     """Return an interval in [0, 1] in percent, rounded outwards to whole numbers: ``85% to 93%``."""
     low, high = floor(100.0 * interval[0] + 1e-9), ceil(100.0 * interval[1] - 1e-9)
     return f"{low}% to {high}%"
+
+
+def significant(value: float, most: int = 6) -> str:
+    """Return a number with three significant digits, but at most ``most`` decimals: ``5.70``, ``0.0123``, ``122``.
+
+    Numbers from 1000 on are rounded, too: 12,345 becomes ``12,300``. Zero is ``0.00``, never ``-0``.
+    """
+    value = round(value, most)
+    if value == 0.0:
+        return "0.00"
+    rounded = round(value, 2 - floor(log10(abs(value))))
+    # Rounding may have added a digit: 9.996 is 10.0.
+    decimals = 2 - floor(log10(abs(rounded)))
+    return f"{rounded:,.{min(most, max(0, decimals))}f}"
+
+
+def mean_text(value: float) -> str:
+    """Return a mean of progress or reward, in [-1, 1], with three significant digits, but at most three decimals."""
+    return significant(value, 3)
 
 
 def number(value: float, places: int) -> str:

@@ -64,7 +64,7 @@ def _times_text(times: Sequence[float]) -> str:
     """Return a clause with the range of some times in seconds: `` at 3.2 s`` or `` at 2.1 s to 5.0 s``."""
     if not times:
         return ""
-    first, last = (f"{time:.1f} s" for time in (min(times), max(times)))
+    first, last = (f"{time:.{_decimals(time)}f} s" for time in (min(times), max(times)))
     return f" at {first}" if first == last else f" at {first} to {last}"
 
 
@@ -108,6 +108,11 @@ def _miss_text(fspa: Fspa, misses: Sequence[NearestMiss]) -> str:
     return f"`{atom}` was not reached" + (f" ({number(best, 2)} at best, it holds above 0)" if best > -1.0 else "")
 
 
+def _decimals(value: float) -> int:
+    """Return the decimals of a time or a distance: one, or none if it has three digits before the point."""
+    return 1 if value < 100.0 else 0
+
+
 def _sufficient_distance(level: Level, fspa: Fspa, name: str) -> float | None:
     """Return the distance in metres below which the atom ``name`` holds.
 
@@ -122,12 +127,12 @@ def _distance_texts(least: float, limit: float | None) -> tuple[str, str]:
     """Return ``least`` as a text, and a clause about ``limit``: ``1.2 m`` and `` holds below 1.0 m``.
 
     Both are in metres. ``least`` is the least distance to a target, and ``limit`` the distance that
-    would suffice. If ``limit`` is None, the clause does not name it. Two decimals are shown if the distances
-    differ only in the second.
+    would suffice. If ``limit`` is None, the clause does not name it. Up to two decimals are shown if the
+    distances differ only there.
     """
     if limit is None:
-        return f"{least:.1f} m", " was not reached"
-    for decimals in (1, 2):
+        return f"{least:.{_decimals(least)}f} m", " was not reached"
+    for decimals in range(_decimals(least), 3):
         if (nearest := f"{least:.{decimals}f} m") != (sufficient := f"{limit:.{decimals}f} m"):
             return nearest, f" holds below {sufficient}"
     return nearest, " holds below that"
