@@ -38,7 +38,7 @@ CASES: Final = "cases"
 """The name of the folder, in the folder of a run, that has a folder for each case."""
 
 _REPORT: Final = "case.json"
-_VERSION: Final = 5
+_VERSION: Final = 6
 _RECORDINGS: Final = 3
 """At most this many episodes of each finding are stored as recordings."""
 
@@ -308,7 +308,8 @@ def _write(folder: Path, inputs: str, level: Level, result: JudgedCase) -> CaseR
     report = report_on(result)
     by_index = {episode.explained.summary.index: episode.recording for episode in result.episodes}
     successes = [episode.summary.index for episode in report.episodes if episode.summary.success]
-    mentioned = [index for finding in report.explanation for index in finding.episodes[:_RECORDINGS]]
+    told = (*report.explanation, *report.new_failures)
+    mentioned = [index for finding in told for index in finding.episodes[:_RECORDINGS]]
     chosen = sorted({*mentioned, *successes[:1]})
     chosen += telling_episodes(level, result.episodes, chosen)
     file_names = {index: f"{index}{SUFFIX}" for index in sorted(chosen)}

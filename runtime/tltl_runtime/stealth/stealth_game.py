@@ -41,6 +41,7 @@ from tltl_runtime.stealth.recordings.figures import figures
 from tltl_runtime.stealth.recordings.file import from_bytes, read_episode, to_bytes
 from tltl_runtime.stealth.snapshot import CHOICES
 from tltl_runtime.stealth.world.physics_errors import player_fault
+from tltl_runtime.stealth.world.player import DECISION
 from tltlc.api import Diagnostic, Fspa, RewardOptions, TltlError
 
 if TYPE_CHECKING:
@@ -155,6 +156,11 @@ class StealthGame(Game[StealthLevel, Episode]):
     def barriers(self, level: StealthLevel) -> dict[str, Box]:
         """Return the boxes of the barriers, by name."""
         return {barrier.name: barrier.box for barrier in level.barriers}
+
+    def clock_s(self, level: StealthLevel) -> float | None:
+        """Return the time of a decision, which all levels share."""
+        del level
+        return DECISION
 
     def unreachable_entities(self, level: StealthLevel, fspa: Fspa) -> list[UnreachableEntity]:
         """Return the entities of a spec that no player can reach.

@@ -36,4 +36,5 @@ def _recorded(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def verdicts(out: str) -> list[str]:
-    return [" ".join(line.split()[:2]) for line in out.splitlines() if line[0] != " "][:-1]
+    """The names and verdicts of the cases, without the sentence above them and the counts below them."""
+    return [" ".join(line.split()[:2]) for line in out.splitlines() if line[0] != " "][1:-1]

@@ -30,24 +30,32 @@ from tltlc.interfaces.cli.main import main
 def test_the_text_report(tltlc: Run, game: Path) -> None:  # noqa: F811
     result = tltlc("regress", "game.toml", "--out", "new", *ONE)
     assert result.status == 1
-    lines = result.out.splitlines()
-    assert verdicts(result.out) == ["room:v0 pass", "room:v1 pass", "hopeless fail"]
+    sentence, *lines = result.out.splitlines()
+    assert sentence == "1 of 3 levels is not finished by its agent, as before; 2 play as before"
+    assert verdicts(result.out) == ["hopeless fail", "room:v0 pass", "room:v1 pass"]
+    assert lines[0].startswith("hopeless  fail      0 of 25     0%  progress")
+    end = next(line for line, text in enumerate(lines) if text.startswith("room:v0"))
+    reasons = lines[1:end]
+    assert all(line.startswith("    ") for line in reasons)
+    assert reasons[1].startswith("    nothing has changed since the baseline")
+    assert "    met in 0 of 25 episodes, before in 0 of 50: certainly in less than 50%" in reasons
     assert re.fullmatch(
-        r"room:v0   pass     (\d\d) of \1   100%  progress  1\.00 \( 1\.00\)  reward  0\.\d\d \( 0\.\d\d\)", lines[0]
+        r"room:v0   pass     (\d\d) of \1   100%  progress   1\.00 \(  1\.00\)  reward  0\.\d{3} \( 0\.\d{3}\)",
+        lines[end],
     )
-    assert lines[1].startswith("room:v1   pass")
+    assert lines[end + 1].startswith("room:v1   pass")
     # A variant that passes has the lines on what it changes, and on what is certain.
-    assert lines[2] == "    differs from `v0` by overlays/guard_alert.toml"
+    assert lines[end + 2] == "    differs from `v0` by overlays/guard_alert.toml"
     assert re.fullmatch(
-        r"    met in (\d\d) of \1 episodes, `v0` before in 50 of 50: certainly in 85% or more", lines[4]
+        r"    met in (\d\d) of \1 episodes, `v0` before in 50 of 50: certainly in 85% or more", lines[end + 4]
     )
-    assert lines[5].startswith("hopeless  fail      0 of 25     0%  progress")
-    assert lines[7] == "    met in 0 of 25 episodes, before in 0 of 50: certainly in less than 50%"
-    assert all(line.startswith("    ") for line in lines[6:-1])
     assert lines[-1] == "3 cases: 2 pass, 1 fail"
     progress = result.err.splitlines()
     assert "room:v0: 25 of at most 50 episodes, 25 met the spec" in progress
     assert "hopeless: 25 of at most 50 episodes, 0 met the spec" in progress
+    # The verdicts are shown as soon as they are known, in the order of the suite.
+    verdict_lines = ["room:v0: pass", "room:v1: pass", "hopeless: fail"]
+    assert [line for line in progress if line in verdict_lines] == verdict_lines
     assert progress[-1] == "wrote new/report.html: open it in a browser"
     page = Path("new/report.html").read_text(encoding="utf-8")
     assert page.startswith("<!DOCTYPE html>") and all(name in page for name in NAMES)
@@ -55,10 +63,10 @@ def test_the_text_report(tltlc: Run, game: Path) -> None:  # noqa: F811
 
 def test_cached_cases_are_marked(tltlc: Run, game: Path) -> None:  # noqa: F811
     result = tltlc("regress", "game.toml", *ONE)
-    assert [line.endswith("  (as before)") for line in result.out.splitlines() if line[0] != " "] == [True] * 3 + [
-        False
-    ]
-    assert result.err == "wrote regression/game/report.html: open it in a browser\n"
+    marked = [line.endswith("  (as before)") for line in result.out.splitlines() if line[0] != " "]
+    assert marked == [False, True, True, True, False]
+    wrote = "wrote regression/game/report.html: open it in a browser"
+    assert result.err.splitlines() == ["room:v0: pass", "room:v1: pass", "hopeless: fail", wrote]
     one_case = ("regress", "game.toml", "--changed", "soon", *ONE)
     cached, fresh = tltlc(*one_case), tltlc(*one_case, "--fresh")
     assert fresh.out == cached.out.replace("  (as before)", "") != cached.out
@@ -78,10 +86,12 @@ def test_the_json_report(tltlc: Run, game: Path) -> None:  # noqa: F811
     result = tltlc("regress", "game.toml", "--json", "-", *ONE)
     assert result.status == 1
     report = json.loads(result.out)
-    head = ["format", "version", "suite", "seed", "error", "complete", "left_out", "verdicts", "cases"]
+    head = ["format", "version", "suite", "seed", "error", "complete", "left_out", "verdicts", "summary", "cases"]
     assert list(report) == head
     assert (report["format"], report["suite"], report["complete"]) == ("tltl-regression", "game.toml", True)
     assert report["verdicts"] == {"pass": 2, "review": 0, "fail": 1}
+    assert report["summary"]["sentence"] in result.err.splitlines()
+    assert (report["summary"]["judged"], report["summary"]["as_before"]) == (3, 2)
     assert [case["name"] for case in report["cases"]] == NAMES
     for case in report["cases"]:
         assert {"level", "variant", "verdict", "pass_rate", "progress", "reward", "baseline", "reasons"} < case.keys()
@@ -105,9 +115,11 @@ def test_the_reports_for_continuous_integration(
     result = tltlc("regress", "game.toml", "--junit", "report.xml", "--html", "page.html", "--github", *ONE)
     (tests,) = ET.parse("report.xml").getroot()
     assert [len(test.findall("failure")) for test in tests.iter("testcase")] == [0, 0, 1]
-    (command,) = (line for line in result.out.splitlines() if line.startswith("::"))
-    assert command.startswith("::error file=game/game.toml,title=hopeless%3A fail::nothing has changed since")
-    assert "met in 0 of 25 episodes" in command
+    sentence, command = (line for line in result.out.splitlines() if line.startswith("::"))
+    assert sentence == f"::notice title=game::{result.out.splitlines()[0]}"
+    assert tests[-1].text == result.out.splitlines()[0]
+    assert command.startswith("::error file=game/game.toml,title=hopeless%3A fail::")
+    assert "%0Anothing has changed since" in command and "met in 0 of 25 episodes" in command
     assert Path("page.html").read_bytes() == Path("regression/game/report.html").read_bytes()
     assert result.err.splitlines()[-1] == "wrote page.html: open it in a browser"
 
@@ -115,7 +127,7 @@ def test_the_reports_for_continuous_integration(
 def test_another_baseline_can_be_named(tltlc: Run, game: Path) -> None:  # noqa: F811
     Path("game.baseline.json").rename("tonight.json")
     result = tltlc("regress", "game.toml", "--baseline", "tonight.json", "--changed", "tonight", *ONE)
-    assert verdicts(result.out) == ["room:v0 pass", "room:v1 pass", "hopeless fail"]
+    assert verdicts(result.out) == ["hopeless fail", "room:v0 pass", "room:v1 pass"]
     result = tltlc("regress", "game.toml", "--baseline", "nowhere.json", *ONE)
     assert result.err == (
         "error[TLT0903]: the suite `game.toml` has no baseline: there is no `nowhere.json`\n"
@@ -278,7 +290,9 @@ def test_a_level_that_does_not_load_fails_its_cases(tltlc: Run, game: Path) -> N
     text = Path("room.toml").read_text(encoding="utf-8")
     Path("room.toml").write_text(text.replace("[start]", "[strat]"), encoding="utf-8")
     result = tltlc("regress", "game.toml", "--github", *ONE, "--changed", "room.toml")
-    assert result.out.startswith("room:v0   fail\n    it cannot be played\n    room.toml:")
+    sentence, _, cases = result.out.partition("\n")
+    assert sentence == "3 of 3 levels cannot be played"
+    assert cases.startswith("room:v0   fail\n    it cannot be played\n    room.toml:")
     commands = [line for line in result.out.splitlines() if line.startswith("::error file=room.toml,")]
     assert len(commands) == 3
     assert "3 cases: 3 fail" in result.out.splitlines()
@@ -371,7 +385,7 @@ def test_a_signal_ends_it_and_keeps_the_judged_cases(tltlc: Run, game: Path, nam
     # The lock of the ended process is free.
     Path("game.toml").write_text(text.replace("10000", "25"), encoding="utf-8")
     result = tltlc("regress", "game.toml", *ONE)
-    assert [line.endswith("(as before)") for line in result.out.splitlines() if line[0] != " "][:2] == [True, True]
+    assert [line.endswith("(as before)") for line in result.out.splitlines() if line[:4] == "room"] == [True, True]
 
 
 def _lengthen(baseline: Path, episodes: int) -> None:

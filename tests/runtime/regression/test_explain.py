@@ -251,8 +251,8 @@ def test_an_obstacle_is_named(level: StealthLevel, fspa: Fspa) -> None:
 @pytest.mark.parametrize(
     ("steps", "text"),
     [
-        (130, "successes are longer: 130 steps on average; before: 100"),
-        (80, "successes are shorter: 80 steps on average; before: 100"),
+        (130, "takes 30 more steps (4.50 s) to meet the spec: 130 on average; before: 100"),
+        (80, "takes 20 fewer steps (3.00 s) to meet the spec: 80 on average; before: 100"),
         (110, None),
     ],
 )
@@ -305,7 +305,7 @@ def test_a_comparison_is_missed_by_a_length(level: StealthLevel) -> None:
     ]
     now = [an_episode(index, False, nearest=misses[index % 2]) for index in range(25)]
     (stage, end, *_) = sentences(level, fspa, now, [an_episode(index, states=(0, 1)) for index in range(25)])
-    assert stage.startswith("makes `x >= 7` true in 0 of 25")
+    assert stage == "no longer makes `x >= 7` true: in 0 of 25 episodes; before: in 25 of 25 episodes"
     assert end.endswith("; `x >= 7` was missed by 1.00 m at best")
 
 

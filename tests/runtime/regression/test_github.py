@@ -9,6 +9,7 @@ from urllib.parse import unquote
 import pytest
 
 from tests.runtime.regression.handmade import PLAYED, ROOM, reference
+from tltl_runtime.regression.explain.explain import Finding
 from tltl_runtime.regression.report.case_report import CaseReport
 from tltl_runtime.regression.report.github import workflow_commands
 from tltl_runtime.regression.suite.suite import Suite, read_suite
@@ -30,7 +31,8 @@ def _suite(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Suite:
 
 
 def annotated(suite: Suite, report: CaseReport, root: str = "..") -> tuple[str, ...]:
-    (line,) = workflow_commands(suite, [report], Path(root))
+    sentence, line = workflow_commands(suite, [report], Path(root))
+    assert sentence.startswith("::notice title=game::The level ")
     match = COMMAND.fullmatch(line)
     assert match, line
     return tuple(map(unquote, match.groups()))
@@ -44,7 +46,7 @@ def test_each_fail_and_review_is_a_command(suite: Suite) -> None:
         "the room: 100%, v0: fail",
         "dies: 100% of\n  them\nmore",
     )
-    (line,) = workflow_commands(suite, [report], Path(".."))
+    _, line = workflow_commands(suite, [report], Path(".."))
     assert "title=the room%3A 100%25%2C v0%3A fail::dies: 100%25 of%0A  them%0Amore" in line
     assert annotated(suite, replace(report, verdict="review"))[0] == "warning"
     assert list(workflow_commands(suite, [replace(report, verdict="pass")], Path())) == []
@@ -78,5 +80,19 @@ def test_paths_are_relative_to_the_checkout(suite: Suite) -> None:
 
 def test_a_level_that_does_not_load_has_a_line_number(suite: Suite) -> None:
     report = CaseReport(NAME, "room", "v0", "fail", ("why",), fault_at=("levels/assets/guard.toml", 6))
-    (line,) = workflow_commands(suite, [report], Path(".."))
+    _, line = workflow_commands(suite, [report], Path(".."))
     assert line.startswith("::error file=game/levels/assets/guard.toml,line=6,title=")
+
+
+def test_failures_come_first_and_a_new_failure_in_a_pass_is_a_notice(suite: Suite) -> None:
+    new = (Finding("dies in 1 of 43 episodes; before: in 0 of 200", (3,)),)
+    passed = CaseReport(NAME, "room", "v0", "pass", ("met",), new_failures=new)
+    failed = replace(passed, verdict="fail")
+    sentence, first, second = workflow_commands(suite, [passed, failed], Path(".."), not_judged=3)
+    assert sentence == (
+        "::notice title=game::1 of 2 levels cannot be played; 1 plays as before, with a new failure; 3 were not judged"
+    )
+    assert first.startswith("::error ") and second.startswith("::notice file=game/levels/room.toml,")
+    assert second.endswith(
+        "v0%3A pass%2C with a new failure::new failure: dies in 1 of 43 episodes; before: in 0 of 200"
+    )

@@ -10,6 +10,7 @@ import pytest
 
 from tests.runtime.regression.handmade import case, suite, summaries
 from tltl_runtime.evaluation.figures import figures_of
+from tltl_runtime.regression.explain.explain import Finding
 from tltl_runtime.regression.report.case_report import CaseReport
 from tltl_runtime.regression.report.junit import junit
 from tltl_runtime.regression.report.retraining_result import FinishedRetraining, RetrainingResult
@@ -69,6 +70,24 @@ def read(reports: tuple[CaseReport, ...]) -> ET.Element:
     return root
 
 
+def test_the_suite_has_its_result_in_a_sentence() -> None:
+    (tests,) = read((GOOD, DOUBTED, BAD))
+    assert tests[-1].tag == "system-out"
+    assert tests[-1].text == "1 of 3 levels cannot be played; 1 may have changed; 1 plays as before"
+    (tests,) = ET.fromstring(junit(SUITE, (GOOD,), ("room:v1",), left_out=1).encode())
+    assert tests[-1].text == "The level plays as before; 2 were not judged"
+
+
+def test_a_new_failure_in_a_pass_is_its_first_reason() -> None:
+    new = Finding("dies in 1 of 40 episodes; before: in 0 of 40", (3,))
+    root = read((replace(GOOD, new_failures=(new,)),))
+    (text,) = [element.text for element in root.findall(".//testcase/system-out")]
+    assert text == "new failure: dies in 1 of 40 episodes; before: in 0 of 40\nmet in 40 of 40 episodes"
+    assert {element.get("name"): element.get("value") for element in root.iter("property")}[
+        "room:v0.new_failures"
+    ] == "1"
+
+
 def test_each_case_is_a_testcase() -> None:
     (tests,) = read((GOOD, DOUBTED, BAD))
     assert tests.attrib == {"name": "game", "tests": "3", "failures": "1", "errors": "1", "skipped": "0"}
@@ -92,6 +111,8 @@ def test_figures_are_properties() -> None:
         "seed": "7",
         "error": "0.05",
         "room:v0.verdict": "pass",
+        "room:v0.status": "as_before",
+        "room:v0.new_failures": "0",
         "room:v0.episodes": "40",
         "room:v0.pass_rate": "1.0000",
         "room:v0.progress": "1.0000",
@@ -101,6 +122,8 @@ def test_figures_are_properties() -> None:
         "room:v0.baseline_progress": "0.8750",
         "room:v0.baseline_reward": "0.4250",
         "room:v2.verdict": "fail",
+        "room:v2.status": "unplayable",
+        "room:v2.new_failures": "0",
     }
 
 

@@ -9,7 +9,7 @@ import pytest
 from tests.runtime.regression.handmade import PLAYED, summaries
 from tltl_runtime.game.level import default_spec
 from tltl_runtime.game.mentions import Mentions
-from tltl_runtime.regression.report.reasons import edits, obstacles, reasons
+from tltl_runtime.regression.report.reasons import edits, obstacles, reasons, version_changes
 from tltl_runtime.regression.suite.changed_lines import changed_lines
 from tltl_runtime.regression.suite.suite import Thresholds
 from tltl_runtime.regression.verdict.baseline import Identity, text_sha256
@@ -67,14 +67,14 @@ def test_an_uncertain_pass_rate_is_stated() -> None:
 
 
 def test_certain_changes_are_stated() -> None:
-    assert reasons_of(60, 0, -0.3)[1:] == ["reward is lower, 0.40 on average; before: 0.70"]
-    assert reasons_of(120, 0, 0.2)[1:] == ["reward is higher, 0.90 on average; before: 0.70"]
+    assert reasons_of(60, 0, -0.3)[1:] == ["reward is lower, 0.400 on average; before: 0.700"]
+    assert reasons_of(120, 0, 0.2)[1:] == ["reward is higher, 0.900 on average; before: 0.700"]
 
 
 def test_uncertain_changes_are_stated() -> None:
     (rate, figure) = reasons_of(40, 0, -0.06)
     assert rate == "met in 40 of 40 episodes, before in 40 of 40: certainly in 85% or more"
-    assert figure == "reward is lower, 0.64 on average; before: 0.70; the difference is 0.05 or more, but not certain"
+    assert figure == "reward is lower, 0.640 on average; before: 0.700; the difference is 0.05 or more, but not certain"
     assert len(reasons_of(40, 0, -0.04)) == 1
 
 
@@ -85,7 +85,7 @@ def test_uncertain_changes_refer_to_the_compared_episodes() -> None:
     judgement = Judgement("review", False, (0.86, 1.0), ())
     (_, figure) = reasons(judgement, DEFAULT, now, before)
     assert figure == (
-        "reward is lower, 0.64 on average; before, in the same 40 episodes: 0.70 (in all 100: 0.75); "
+        "reward is lower, 0.640 on average; before, in the same 40 episodes: 0.700 (in all 100: 0.748); "
         "the difference is 0.05 or more, but not certain"
     )
 
@@ -221,7 +221,8 @@ def test_another_variant_differs_by_its_overlays() -> None:
 def test_other_versions_are_reported() -> None:
     before = replace(PLAYED, versions={"tltlc": "0.1", "numpy": "1.26.4", "pybullet": "3.2"})
     now = replace(PLAYED, versions={"tltlc": "0.1", "numpy": "2.0.1"})
-    assert edit_texts(now, before, []) == [
+    assert edit_texts(now, before, []) == []
+    assert list(version_changes(now, before)) == [
         "the baseline was recorded with numpy 1.26.4, this run with 2.0.1",
         "the baseline was recorded with pybullet 3.2, this run without it",
     ]

@@ -220,7 +220,7 @@ def test_a_spec_changed_since_the_training_is_reviewed(game: Path) -> None:
     for done in results[:2]:
         assert done.report.verdict == "review"
         assert done.report.edits[0].startswith("changed since the baseline: room.toml")
-        assert done.report.headline == done.report.causes[0]
+        assert done.report.headline == done.report.main[0] == done.report.reasons[0]
         assert done.report.headline.startswith("the spec `easy` has changed since the policy was trained (")
         assert done.case_to_train is None, "a training would be for the old spec"
     assert results[2].case_to_train is not None
@@ -233,9 +233,9 @@ def test_a_spec_changed_since_the_training_is_reviewed(game: Path) -> None:
 def test_the_headline_of_a_failure_describes_the_ends(game: Path) -> None:
     passed, _, failed = (done.report for done in run()[0])
     assert passed.headline == passed.reasons[0]
-    # First comes what has changed, then how most episodes end.
-    assert failed.headline.startswith(f"{failed.edits[0]}; ")
-    main = failed.headline.removeprefix(f"{failed.edits[0]}; ")
+    # First comes how most episodes end, then what has changed.
+    main = failed.headline.removesuffix(f"; {failed.edits[0]}")
+    assert main != failed.headline and failed.reasons[0].startswith(main)
     (end,) = (finding.text for finding in failed.explanation if finding.text.startswith(main))
     assert end.partition(";")[0] == main
     assert re.search(r" of 25 episodes( \(\d+%\))?$", main)

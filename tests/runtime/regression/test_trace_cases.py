@@ -62,11 +62,18 @@ def regress(tltlc: Run, *words: str) -> Outcome:  # noqa: F811
     return tltlc("regress", "--spec", "fetch.tltl", *words)
 
 
+def cases(outcome: Outcome) -> str:
+    """The printed lines of the cases, without the sentence above them."""
+    return outcome.out.partition("\n")[2]
+
+
 def test_equal_traces_pass(tltlc: Run, here: Path) -> None:  # noqa: F811
     result = regress(tltlc, "--baseline", "old", "--now", "old")
     assert result.status == 0
     assert result.out == (
-        "fetch  pass     95 of 100   95%  progress  0.97 ( 0.97)  reward  0.97 ( 0.97)\n1 case: 1 pass\n"
+        "The set of traces is as before\n"
+        "fetch  pass     95 of 100   95%  progress  0.975 ( 0.975)  reward  0.975 ( 0.975)\n"
+        "1 case: 1 pass\n"
     )
     assert "wrote regression/fetch/report.html" in result.err
 
@@ -74,11 +81,13 @@ def test_equal_traces_pass(tltlc: Run, here: Path) -> None:  # noqa: F811
 def test_a_broken_build_fails_and_the_clause_is_named(tltlc: Run, here: Path) -> None:  # noqa: F811
     result = regress(tltlc, "--baseline", "old", "--now", "new")
     assert result.status == 1
-    first, *reasons, last = result.out.splitlines()
+    sentence, first, *reasons, last = result.out.splitlines()
+    assert sentence == "The set of traces no longer meets its spec"
     assert first.startswith("fetch  fail     30 of 100")
     assert last == "1 case: 1 fail"
-    assert reasons[0].strip() == "met in 30 of 100 traces (30%), before in 95 of 100 (95%): certainly in less than 50%"
+    assert "    met in 30 of 100 traces (30%), before in 95 of 100 (95%): certainly in less than 50%" in reasons
     (burnt,) = (reason for reason in reasons if "breaks" in reason)
+    assert burnt == reasons[0]
     assert burnt.strip().startswith(
         "breaks `avoid on_lava` at step 2 in 65 of 100 traces (65%); before: in 0 of 100 traces; "
     )
@@ -92,7 +101,7 @@ def test_fewer_than_25_traces_need_a_review(tltlc: Run, here: Path) -> None:  # 
     write_traces(here / "few", (24, WON))
     result = regress(tltlc, "--baseline", "old", "--now", "few")
     assert result.status == 1
-    assert result.out.startswith("fetch  review   24 of 24")
+    assert cases(result).startswith("fetch  review   24 of 24")
     assert "    only 24 traces: a verdict needs 25\n" in result.out
     result = regress(tltlc, "--baseline", "few", "--now", "old")
     assert "    only 24 traces in the baseline: a verdict needs 25\n" in result.out
@@ -101,7 +110,7 @@ def test_fewer_than_25_traces_need_a_review(tltlc: Run, here: Path) -> None:  # 
 def test_a_trace_that_cannot_be_judged_needs_a_review(tltlc: Run, here: Path) -> None:  # noqa: F811
     (here / "old" / "bad.csv").write_text("time,on_lava,has_key\n0.0,0,0\n", encoding="utf-8")
     result = regress(tltlc, "--baseline", "old", "--now", "old")
-    assert result.out.startswith("fetch  review   95 of 100")
+    assert cases(result).startswith("fetch  review   95 of 100")
     assert "1 of 101 traces cannot be judged: first `old/bad.csv` (old/bad.csv:1: TLT0" in result.out
     assert "1 of 101 traces of the baseline cannot be judged" in result.out
 
@@ -116,7 +125,7 @@ def test_without_a_trace_that_can_be_judged_a_review_is_needed(
     (here / "bad").mkdir()
     (here / "bad" / "bad.csv").write_text("time\n0.0\n", encoding="utf-8")
     result = regress(tltlc, "--baseline", baseline, "--now", now)
-    assert (result.status, result.out.splitlines()[0]) == (1, "fetch  review")
+    assert (result.status, cases(result).splitlines()[0]) == (1, "fetch  review")
     assert "1 of 1 traces" in result.out
 
 
@@ -141,7 +150,7 @@ def test_traces_that_cannot_be_judged_may_meet_the_spec(
     for number in range(unread):
         (folder / f"unread{number}.csv").write_text("time\n0.0\n", encoding="utf-8")
     result = regress(tltlc, "--baseline", "old", "--now", "hidden", "--json", "report.json")
-    assert result.out.startswith(f"fetch  {verdict} ")
+    assert cases(result).startswith(f"fetch  {verdict} ")
     (case,) = json.loads((here / "report.json").read_text(encoding="utf-8"))["cases"]
     assert case["certain"] == (verdict == "fail")
     assert case["rate_interval"][1] > unread / (burnt + unread)
@@ -166,7 +175,7 @@ def test_warnings_of_traces_are_counted(tltlc: Run, here: Path) -> None:  # noqa
         (folder / f"{number:03}.csv").write_text("\n".join([header, *rows]) + "\n", encoding="utf-8")
     result = regress(tltlc, "--baseline", "hot", "--now", "hot", "--json", "report.json")
     (case,) = json.loads((here / "report.json").read_text(encoding="utf-8"))["cases"]
-    assert result.out.startswith("fetch  pass")
+    assert cases(result).startswith("fetch  pass")
     assert any(
         reason.startswith("2 of 30 traces have warnings: first `hot/000.csv` (TLT0") for reason in case["reasons"]
     )
@@ -181,13 +190,13 @@ def test_json_lines_are_judged(tltlc: Run, here: Path) -> None:  # noqa: F811
             for step, (lava, key, at_exit) in enumerate(WON)
         ]
         (folder / f"{number:03}.jsonl").write_text("".join(json.dumps(row) + "\n" for row in rows), encoding="utf-8")
-    assert regress(tltlc, "--baseline", "old", "--now", "lines").out.startswith("fetch  pass     30 of 30")
+    assert cases(regress(tltlc, "--baseline", "old", "--now", "lines")).startswith("fetch  pass     30 of 30")
 
 
 def test_the_thresholds_can_be_set(tltlc: Run, here: Path) -> None:  # noqa: F811
     words = ("--baseline", "new", "--now", "new")
-    assert regress(tltlc, *words).out.startswith("fetch  fail ")
-    assert regress(tltlc, *words, "--pass-rate", "0.15", "--fail-rate", "0.1").out.startswith("fetch  pass ")
+    assert cases(regress(tltlc, *words)).startswith("fetch  fail ")
+    assert cases(regress(tltlc, *words, "--pass-rate", "0.15", "--fail-rate", "0.1")).startswith("fetch  pass ")
     rejected = regress(tltlc, *words, "--pass-rate", "0.3")
     message = "--fail-rate is 0.5, above --pass-rate, 0.3: give --fail-rate a value of at most 0.3"
     assert (rejected.status, message in " ".join(rejected.err.split())) == (2, True), rejected.err
@@ -196,14 +205,14 @@ def test_the_thresholds_can_be_set(tltlc: Run, here: Path) -> None:  # noqa: F81
 def test_a_trace_ends_at_the_goal_unless_it_is_judged_as_a_whole(tltlc: Run, here: Path) -> None:  # noqa: F811
     write_traces(here / "longer", (40, [*WON, "100"]))
     words = ("--baseline", "longer", "--now", "longer")
-    assert regress(tltlc, *words).out.startswith("fetch  pass     40 of 40")
-    assert regress(tltlc, *words, "--judged-as", "traces").out.startswith("fetch  fail      0 of 40")
+    assert cases(regress(tltlc, *words)).startswith("fetch  pass     40 of 40")
+    assert cases(regress(tltlc, *words, "--judged-as", "traces")).startswith("fetch  fail      0 of 40")
 
 
 def test_a_trace_that_takes_longer_than_the_limit_fails(tltlc: Run, here: Path) -> None:  # noqa: F811
     (here / "fetch.tltl").write_text(SPEC.replace("avoid", "limit 2 steps  avoid"), encoding="utf-8")
     result = regress(tltlc, "--baseline", "old", "--now", "old")
-    assert result.out.startswith("fetch  fail      0 of 100")
+    assert cases(result).startswith("fetch  fail      0 of 100")
     assert "reaches the limit before `reach has_key then at_exit` is met in 100 of 100 traces" in result.out
 
 
@@ -254,8 +263,10 @@ def test_all_traces_are_compared_whatever_their_order(here: Path) -> None:
 def test_the_reports_have_the_same_verdict(tltlc: Run, here: Path) -> None:  # noqa: F811
     files = ("--json", "report.json", "--junit", "report.xml", "--html", "report.html", "--github")
     result = regress(tltlc, "--baseline", "old", "--now", "new", *files)
-    (annotation,) = (line for line in result.out.splitlines() if line.startswith("::"))
-    assert annotation.startswith("::error file=fetch.tltl,title=fetch%3A fail::met in 30 of 100 traces")
+    sentence, annotation = (line for line in result.out.splitlines() if line.startswith("::"))
+    assert sentence == "::notice title=fetch::The set of traces no longer meets its spec"
+    assert annotation.startswith("::error file=fetch.tltl,title=fetch%3A fail::breaks `avoid on_lava` at step 2")
+    assert "met in 30 of 100 traces" in annotation
     document = json.loads((here / "report.json").read_text(encoding="utf-8"))
     (case,) = document["cases"]
     assert (case["verdict"], case["spec"], case["episodes"], case["pass_rate"]) == ("fail", "fetch", 100, 0.3)
@@ -347,13 +358,13 @@ def test_a_suite_lists_traces(tltlc: Run, here: Path) -> None:  # noqa: F811
     assert (first.name, first.thresholds.pass_rate, first.as_episodes) == ("lava", 0.9, True)
     assert (second.name, second.as_episodes) == ("old", False)
     result = tltlc("regress", "suite.toml")
-    assert [line.split()[:2] for line in result.out.splitlines() if line[0] != " "][:2] == [
+    assert [line.split()[:2] for line in result.out.splitlines() if line[0] != " "][1:3] == [
         ["lava", "fail"],
         ["old", "pass"],
     ]
     for name in ("new/003.csv", "new/removed.csv", "new"):
         changed = tltlc("regress", "suite.toml", "--changed", name)
-        assert changed.out.startswith("lava  fail"), name
+        assert cases(changed).startswith("lava  fail"), name
         assert "left out, because it depends on none of the named files: old" in changed.err
 
 
@@ -436,5 +447,5 @@ def test_traces_are_judged_without_a_game(here: Path) -> None:
     )
     assert (done.returncode, done.stderr.splitlines()) == (
         0,
-        ["fetch: 200 traces are judged", "wrote regression/fetch/report.html: open it in a browser"],
+        ["fetch: 200 traces are judged", "fetch: pass", "wrote regression/fetch/report.html: open it in a browser"],
     )

@@ -46,6 +46,11 @@ class RegressionDisplay:
         elif count == total:
             click.echo(f"{plain_text(case.name)}: {total} traces are judged", err=True)
 
+    def show_verdict(self, name: str, verdict: str) -> None:
+        """Show the verdict on a case that is finished. The report, which comes later, has the reasons."""
+        self.clear()
+        click.echo(f"{plain_text(name)}: {verdict}", err=True)
+
     def show_films(self, name: str, count: int, total: int) -> None:
         """Show that ``count`` of all ``total`` films of a case are drawn for the page."""
         if sys.stderr.isatty():

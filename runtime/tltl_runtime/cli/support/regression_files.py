@@ -74,12 +74,14 @@ class SuiteRun:
 def json_text(outcome: SuiteRun) -> str:
     """Return the JSON report."""
     reports = [case.report for case in outcome.cases]
-    data = document(outcome.suite, reports, complete=outcome.complete, left_out=outcome.left_out)
+    data = document(
+        outcome.suite, reports, complete=outcome.complete, left_out=outcome.left_out, missing=outcome.missing
+    )
     return _encodable(json.dumps(data, indent=2, ensure_ascii=False)) + "\n"
 
 
 def _junit_text(outcome: SuiteRun) -> str:
-    return junit(outcome.suite, [case.report for case in outcome.cases], outcome.missing)
+    return junit(outcome.suite, [case.report for case in outcome.cases], outcome.missing, len(outcome.left_out))
 
 
 def _page_text(outcome: SuiteRun) -> str:

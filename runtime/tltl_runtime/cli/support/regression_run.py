@@ -14,7 +14,7 @@ import click
 from tltl_runtime.cli.support.plain_text import plain_text
 from tltl_runtime.cli.support.regression_display import RegressionDisplay
 from tltl_runtime.cli.support.regression_files import REPORTS, SuiteRun, write_reports
-from tltl_runtime.cli.support.regression_text import case_lines, summary_line
+from tltl_runtime.cli.support.regression_text import report_lines, summary_line
 from tltl_runtime.cli.support.trace_options import spec_label, threshold_option
 from tltl_runtime.cli.support.writable_paths import check_apart, check_no_training, check_writable, is_standard_output
 from tltl_runtime.evaluation.evaluate import Pool
@@ -99,7 +99,10 @@ def run(options: RegressOptions) -> int:
     results: list[FinishedCase] = []
     with lock_run(options.folder):
         try:
-            _play(suite, cases, references, options, results)
+            try:
+                _play(suite, cases, references, options, results)
+            finally:
+                _print_cases(suite, options, results)
             _retrain(suite, options, results)
         except BaseException as error:
             if isinstance(error, KeyboardInterrupt):
@@ -205,8 +208,7 @@ def _play(
     options: RegressOptions,
     results: list[FinishedCase],
 ) -> None:
-    """Judge the cases; print each finished case at once and add it to ``results``."""
-    width = max((len(plain_text(case.name)) for case in cases), default=0)
+    """Judge the cases; add each finished case to ``results``, and print its verdict to standard error."""
     with (
         RegressionDisplay("at most") as display,
         closing(
@@ -224,12 +226,16 @@ def _play(
     ):
         for case in finished_cases:
             results.append(case)
-            display.clear()
-            for line in case_lines(case.report, width, is_cached=case.is_cached):
-                click.echo(line, err=options.printed_option is not None)
+            display.show_verdict(case.report.name, case.report.verdict)
             if case.traces is not None and (others := (*case.traces.now.others, *case.traces.before.others)):
                 names = plain_text(short_list(others, _MOST_NAMED))
                 click.echo(f"{plain_text(case.report.name)}: not traces, by their names: {names}", err=True)
+
+
+def _print_cases(suite: Suite, options: RegressOptions, results: Sequence[FinishedCase]) -> None:
+    """Print the result of the suite in a sentence, and the lines of each finished case, failures first."""
+    for line in report_lines(results, len(suite.cases) - len(results)):
+        click.echo(line, err=options.printed_option is not None)
 
 
 def _retrain(suite: Suite, options: RegressOptions, results: list[FinishedCase]) -> None:
@@ -330,7 +336,9 @@ def _write_and_print(outcome: SuiteRun, options: RegressOptions, display: Regres
         display.clear()
         click.echo(text.encode(), nl=False)
     if options.github:
-        for line in workflow_commands(outcome.suite, reports, Path(os.environ.get("GITHUB_WORKSPACE") or ".")):
+        root = Path(os.environ.get("GITHUB_WORKSPACE") or ".")
+        not_judged = len(outcome.missing) + len(outcome.left_out)
+        for line in workflow_commands(outcome.suite, reports, root, not_judged):
             click.echo(line)
     page = write_reports(outcome, options.report_files)
     display.clear()

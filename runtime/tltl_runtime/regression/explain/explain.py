@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from statistics import fmean
-from typing import Final
+from typing import Final, Literal
 
 from tltl_runtime.game.geometry import Region
 from tltl_runtime.game.level import Level
@@ -18,10 +18,10 @@ from tltl_runtime.regression.explain.explained_episode import ExplainedEpisode
 from tltl_runtime.regression.explain.failures import end_of, failures
 from tltl_runtime.regression.explain.open_goals import open_goals, subgoal_of_all
 from tltl_runtime.regression.explain.path_points import positions_along
-from tltl_runtime.regression.explain.phrase import phrase, quoted_names
+from tltl_runtime.regression.explain.phrase import Phrase, phrase, quoted_names
 from tltl_runtime.regression.explain.stages import Subgoal, subgoals_phrase
-from tltl_runtime.support.number_text import count_text, percent
-from tltlc.api import Fspa, label_text, record
+from tltl_runtime.support.number_text import count_text, percent, significant
+from tltlc.api import Fspa, Notation, label_text, record
 
 _STAGE_TOLERANCE: Final = 0.05
 """The share of episodes that complete a stage has changed if it differs by at least this much."""
@@ -38,8 +38,24 @@ _LENGTH_RATIO: Final = 1.15
 _MOST_STATES: Final = 3
 """What remained to be done is said for at most this many states: those in which most episodes failed."""
 
+_NOTATIONS: Final[tuple[Notation, Notation]] = ("english", "unicode")
+"""The notations of formulas in sentences: in words, and in symbols."""
+
 _MIN_SUCCESSES: Final = 3
 """Lengths and regions are compared only if at least this many episodes succeed, both now and before."""
+
+
+FindingKind = Literal["unreached", "end", "stage", "length", "region", "remaining", "unchanged"]
+"""What a finding is about.
+
+- ``unreached``: a stage that episodes completed before, and none completes now;
+- ``end``: how episodes fail;
+- ``stage``: another stage that more or fewer episodes complete than before;
+- ``length``: whether successful episodes are longer or shorter;
+- ``region``: a region through which more or fewer successful episodes pass;
+- ``remaining``: what remained to be done in failed episodes;
+- ``unchanged``: the stages that most episodes complete, now as before.
+"""
 
 
 @record
@@ -48,13 +64,17 @@ class Finding:
 
     ``text`` is the sentence. ``episodes`` are the indices of the episodes that do what it says or, if
     ``others`` is true, of the episodes that do not. ``mentions`` names the things and regions of the
-    level that the sentence mentions.
+    level that the sentence mentions. ``short`` is the sentence without details; empty if it has none.
+    ``symbols`` is the sentence with its formula in symbols instead of words; empty if it has no formula.
     """
 
     text: str
     episodes: tuple[int, ...]
     others: bool = False
     mentions: Mentions = NO_MENTIONS
+    kind: FindingKind = "end"
+    short: str = ""
+    symbols: str = ""
 
 
 def findings(
@@ -68,9 +88,9 @@ def findings(
     """
     return (
         *_stages(fspa, now, before, _noun(level)),
-        *(finding for _, finding in _ends(level, fspa, now, before)),
+        *_ends(level, fspa, now, before),
         *_remaining(fspa, now),
-        *_lengths(now, before),
+        *_lengths(_step_s(level, fspa), now, before),
         *(_regions(level, now, before) if level is not None else ()),
     )
 
@@ -98,18 +118,36 @@ def _stages(
             if len(passed_now) / len(now) > _COMMON_SHARE:
                 unchanged_stages.append(stage)
             continue
-        prefix = phrase(subgoals_phrase(unchanged_stages), " as before, then ") if unchanged_stages else ""
         failed = tuple(episode.summary.index for episode in now if episode not in passed_now)
         counts = [
             count_text(len(passed), len(episodes), noun, is_compared=len(now) != len(before))
             for passed, episodes in ((passed_now, now), (passed_before, before))
         ]
-        sentence = phrase(prefix, subgoals_phrase([stage]), f" in {counts[0]}; before: in {counts[1]}")
-        yield Finding(sentence.text, failed, others=True, mentions=sentence.mentions)
+        yield _stage(stage, unchanged_stages, counts, failed, is_unreached=not passed_now)
         return
     if unchanged_stages:
         sentence = phrase(subgoals_phrase(unchanged_stages), " as before")
-        yield Finding(sentence.text, (), mentions=sentence.mentions)
+        yield Finding(sentence.text, (), mentions=sentence.mentions, kind="unchanged")
+
+
+def _stage(
+    stage: Subgoal, unchanged: Sequence[Subgoal], counts: Sequence[str], failed: tuple[int, ...], *, is_unreached: bool
+) -> Finding:
+    """Return the finding about the first changed stage.
+
+    ``unchanged`` are the earlier stages. ``counts`` say how many episodes complete the stage now and
+    before, and ``failed`` are the indices of those that do not. ``is_unreached`` says that none does.
+    """
+    goal = subgoals_phrase([stage])
+    earlier = phrase(subgoals_phrase(unchanged), " as before") if unchanged else Phrase("")
+    if is_unreached:
+        short = phrase("no longer ", goal, f": in {counts[0]}")
+        sentence = phrase(short, f"; before: in {counts[1]}", "; " if unchanged else "", earlier)
+    else:
+        short = phrase(earlier, ", then " if unchanged else "", goal, f" in {counts[0]}")
+        sentence = phrase(short, f"; before: in {counts[1]}")
+    kind: FindingKind = "unreached" if is_unreached else "stage"
+    return Finding(sentence.text, failed, others=True, mentions=sentence.mentions, kind=kind, short=short.text)
 
 
 def _visited_states(fspa: Fspa, episodes: Sequence[ExplainedEpisode]) -> list[tuple[int, set[int]]]:
@@ -134,23 +172,12 @@ def _distances(fspa: Fspa, episode: ExplainedEpisode) -> list[int]:
     return [distance for distance in distances if distance is not None] or [fspa.spec_size]
 
 
-def most_frequent_end(
-    level: Level | None, fspa: Fspa, now: Sequence[ExplainedEpisode], before: Sequence[ExplainedEpisode]
-) -> str | None:
-    """Describe how the failed episodes ``now`` end most often: ``dies in the corridor in 7 of 25 episodes``.
-
-    None if no episode failed. ``before`` are the episodes of the baseline. ``level`` is None for
-    recorded traces.
-    """
-    return next((headline for headline, _ in _ends(level, fspa, now, before)), None)
-
-
 def _ends(
     level: Level | None, fspa: Fspa, now: Sequence[ExplainedEpisode], before: Sequence[ExplainedEpisode]
-) -> Iterator[tuple[str, Finding]]:
-    """Yield a short text and a finding for each way in which episodes ``now`` fail.
+) -> Iterator[Finding]:
+    """Yield a finding for each way in which episodes ``now`` fail.
 
-    The text says how many episodes fail in this way. The finding adds how many episodes ``before``
+    Its short text says how many episodes fail in this way. The sentence adds how many episodes ``before``
     did so, and details. The order is that of
     :func:`~tltl_runtime.regression.explain.failures.failures`. All texts are distinct.
     """
@@ -159,11 +186,30 @@ def _ends(
     for group in failures(level, fspa, now, ends_before):
         matches = [group.matches(end) for end in ends_before]
         ends_before = [end for end, is_match in zip(ends_before, matches, strict=True) if not is_match]
-        headline = phrase(group.text, f" in {count_text(len(group.episodes), len(now), noun, is_compared=is_compared)}")
+        short = phrase(group.text, f" in {count_text(len(group.episodes), len(now), noun, is_compared=is_compared)}")
         counted_before = count_text(sum(matches), len(before), noun, is_compared=is_compared)
-        sentence = phrase(headline, f"; before: in {counted_before}", group.more)
+        sentence = phrase(short, f"; before: in {counted_before}", group.more)
         indices = tuple(sorted(episode.summary.index for episode in group.episodes))
-        yield headline.text, Finding(sentence.text, indices, mentions=sentence.mentions)
+        yield Finding(sentence.text, indices, mentions=sentence.mentions, short=short.text)
+
+
+def new_failures(
+    level: Level | None, fspa: Fspa, now: Sequence[ExplainedEpisode], before: Sequence[ExplainedEpisode]
+) -> tuple[Finding, ...]:
+    """Return a finding for each way in which episodes ``now`` fail, but no episode ``before``.
+
+    Ways to fail differ in their cause and in what caused it; if the spec was not broken, also in the
+    subgoal that was not reached. The place does not count. The texts are as in :func:`findings`.
+    """
+    known = {end_of(level, fspa, episode).mode for episode in before if not episode.summary.success}
+    new = [episode for episode in now if not episode.summary.success and end_of(level, fspa, episode).mode not in known]
+    results = []
+    for group in failures(level, fspa, new):
+        short = phrase(group.text, f" in {count_text(len(group.episodes), len(now), _noun(level))}")
+        sentence = phrase(short, f"; before: in 0 of {len(before)}")
+        indices = tuple(sorted(episode.summary.index for episode in group.episodes))
+        results.append(Finding(sentence.text, indices, mentions=sentence.mentions, short=short.text))
+    return tuple(results)
 
 
 def _remaining(fspa: Fspa, now: Sequence[ExplainedEpisode]) -> Iterator[Finding]:
@@ -171,19 +217,21 @@ def _remaining(fspa: Fspa, now: Sequence[ExplainedEpisode]) -> Iterator[Finding]
     failed = [episode for episode in now if not episode.summary.success]
     for state, count in Counter(episode.summary.unmet for episode in failed).most_common(_MOST_STATES):
         counted = count_text(count, len(failed), f"failure{'s' * (len(failed) != 1)}")
-        text = f"in {counted}, {_remaining_text(fspa, state)} (state {state})"
-        indices = (episode.summary.index for episode in failed if episode.summary.unmet == state)
-        yield Finding(text, tuple(sorted(indices)))
+        words, symbols = (
+            f"in {counted}, {_remaining_text(fspa, state, notation)} (state {state})" for notation in _NOTATIONS
+        )
+        indices = tuple(sorted(episode.summary.index for episode in failed if episode.summary.unmet == state))
+        yield Finding(words, indices, kind="remaining", symbols="" if symbols == words else symbols)
 
 
-def _remaining_text(fspa: Fspa, state: int) -> str:
+def _remaining_text(fspa: Fspa, state: int, notation: Notation) -> str:
     """Say what remains in a state: ``2 of 3 goals were reached: `a` and `b`; `c` was missed``.
 
     If goals in any order are not all that remains, the text is that of the state: ``this remained: Reach c``.
     """
     goals = open_goals(fspa, state)
     if goals is None or not goals.open:
-        return f"this remained: {label_text(fspa, state).rstrip('.')}"
+        return f"this remained: {label_text(fspa, state, notation).rstrip('.')}"
     count = len(goals.reached)
     reached = f": {quoted_names(goals.reached)}" if count else ""
     were, missed = ("was" if number == 1 else "were" for number in (count, len(goals.open)))
@@ -191,16 +239,35 @@ def _remaining_text(fspa: Fspa, state: int) -> str:
     return f"{count} of {total} goals {were} reached{reached}; {quoted_names(goals.open)} {missed} missed"
 
 
-def _lengths(now: Sequence[ExplainedEpisode], before: Sequence[ExplainedEpisode]) -> Iterator[Finding]:
+def _step_s(level: Level | None, fspa: Fspa) -> float | None:
+    """Return how long a step takes, in seconds; None if neither the spec nor the level's game has a fixed clock."""
+    if fspa.clock_varies:
+        return None
+    if fspa.clock_s is None and level is not None:
+        return level.game.clock_s(level)
+    return fspa.clock_s
+
+
+def _lengths(
+    step_s: float | None, now: Sequence[ExplainedEpisode], before: Sequence[ExplainedEpisode]
+) -> Iterator[Finding]:
+    """Yield a finding if successful episodes take clearly more or fewer steps than before.
+
+    ``step_s`` is how long a step takes, in seconds, or None.
+    """
     new, old = (
         [episode.summary.steps for episode in episodes if episode.summary.success] for episodes in (now, before)
     )
-    if min(len(new), len(old)) >= _MIN_SUCCESSES:
-        ratio = fmean(new) / fmean(old)
-        if not 1 / _LENGTH_RATIO < ratio < _LENGTH_RATIO:
-            change = "longer" if ratio > 1 else "shorter"
-            text = f"successes are {change}: {fmean(new):.0f} steps on average; before: {fmean(old):.0f}"
-            yield Finding(text, tuple(episode.summary.index for episode in now if episode.summary.success))
+    if min(len(new), len(old)) < _MIN_SUCCESSES or 1 / _LENGTH_RATIO < fmean(new) / fmean(old) < _LENGTH_RATIO:
+        return
+    # Subtract the rounded means, so that the difference is that of the numbers in the sentence.
+    mean, mean_before = round(fmean(new)), round(fmean(old))
+    count = abs(mean - mean_before)
+    steps = f"{count:,} {'more' if mean > mean_before else 'fewer'} step{'s' * (count != 1)}"
+    time = f" ({significant(count * step_s)} s)" if step_s is not None else ""
+    short = f"takes {steps}{time} to meet the spec"
+    indices = tuple(episode.summary.index for episode in now if episode.summary.success)
+    yield Finding(f"{short}: {mean:,} on average; before: {mean_before:,}", indices, kind="length", short=short)
 
 
 def _regions(level: Level, now: Sequence[ExplainedEpisode], before: Sequence[ExplainedEpisode]) -> Iterator[Finding]:
@@ -221,6 +288,7 @@ def _regions(level: Level, now: Sequence[ExplainedEpisode], before: Sequence[Exp
                 f"{pass_through}; before: {percent(share_before)}",
                 tuple(episode.summary.index for episode in visits_now),
                 mentions=Mentions(regions=(region.name,)),
+                kind="region",
             )
 
 

@@ -50,6 +50,11 @@ class FailureEnd:
         """The cause and the names in ``by``: how the episode failed, without place and subgoal."""
         return self.cause, self.by
 
+    @property
+    def mode(self) -> tuple[_FailureKind, Subgoal | None]:
+        """How the episode failed, without the place: if nothing broke the spec, also what was not reached."""
+        return self.kind, None if self.cause in ("killed", "violated") else self.undone
+
 
 @record
 class Failures:

@@ -3,27 +3,40 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import Final
+from typing import Final, Literal
 
 from tltl_runtime.evaluation.figures import Figures, figures_of
 from tltl_runtime.game.level_name import level_stem
 from tltl_runtime.game.mentions import NO_MENTIONS, Mentions, union
-from tltl_runtime.regression.explain.explain import Finding, findings, most_frequent_end
+from tltl_runtime.regression.explain.explain import Finding, findings, new_failures
 from tltl_runtime.regression.explain.explained_episode import ExplainedEpisode, summaries_of
 from tltl_runtime.regression.explain.phrase import Phrase
-from tltl_runtime.regression.report.reasons import edits, is_unchanged, obstacles, reasons
+from tltl_runtime.regression.report.reason_order import Reason, ordered_reasons, telling_findings
+from tltl_runtime.regression.report.reasons import edits, is_unchanged, obstacles, reasons, version_changes
 from tltl_runtime.regression.report.retraining_result import RetrainingResult
 from tltl_runtime.regression.suite.suite import Case
-from tltl_runtime.regression.suite.thresholds import Thresholds
 from tltl_runtime.regression.verdict.baseline import Identity
 from tltl_runtime.regression.verdict.level_texts import level_texts
 from tltl_runtime.regression.verdict.play import JudgedCase
-from tltl_runtime.regression.verdict.verdict import CaseVerdict, FigureChange, Judgement
+from tltl_runtime.regression.verdict.verdict import CaseVerdict, FigureChange
 from tltlc.api import Diagnostic, TltlError, record
 
 _UNCHANGED: Final = (
     "nothing has changed since the baseline: the level, the spec, the policy and all versions are those of the baseline"
 )
+
+
+CaseStatus = Literal["unfinished", "impossible", "unplayable", "unfinished_before", "changed", "uncertain", "as_before"]
+"""What has become of a case.
+
+- ``unfinished``: it fails, and passed more often in the baseline; ``impossible``: and certainly no player
+  can meet its spec;
+- ``unplayable``: it fails because it cannot be played or judged;
+- ``unfinished_before``: it fails, but perhaps no more often than in the baseline;
+- ``changed`` or ``uncertain``: it needs a review, because it has certainly changed, or because too little
+  is certain;
+- ``as_before``: it passes.
+"""
 
 
 @record
@@ -54,18 +67,24 @@ class CaseTraces:
 class CaseReport:
     """The report on a case.
 
-    - ``causes`` are sentences that justify the verdict.
+    - ``main`` are sentences that come before all other reasons: the spec was changed, or no player can
+      reach what it asks for.
+    - ``causes`` are sentences that justify the verdict, such as that on the pass rate.
+    - ``figure_changes`` are sentences on progress and reward.
     - ``certain``, ``rate_interval`` and ``changes`` are as in
       :class:`~tltl_runtime.regression.verdict.verdict.Judgement`.
     - ``figures`` are the statistics of the played episodes, ``baseline`` those of the episodes in the
       baseline.
     - ``explanation`` says what the policy does differently from the baseline.
-    - ``edits`` are sentences about what has changed since the baseline: files, overlays (files that
-      change a level), versions of software. If a case does not pass and nothing has changed, they say so.
+    - ``new_failures`` are findings on ways to fail that the baseline does not have, whatever the verdict is.
+    - ``edits`` are sentences about what has changed since the baseline: files and overlays (files that
+      change a level). If a case does not pass and nothing has changed, they say so.
+    - ``version_changes`` are sentences about other versions of software than those of the baseline.
+    - ``is_impossible`` says that certainly no player can meet the spec.
     - ``descriptions`` are texts in which the designer describes the overlays. They are also in
       ``edits``.
-    - ``mentions`` names the things and regions of the level that ``causes`` and ``edits`` mention,
-      except those that only ``descriptions`` mention.
+    - ``mentions`` names the things and regions of the level that ``main`` and ``edits`` mention, except
+      those that only ``descriptions`` mention.
     - ``played`` and ``reference`` identify what was played now and for the baseline.
     - ``episodes`` are the played episodes, or the judged traces as episodes.
     - ``lost`` is the sentence, one of ``causes``, that says how many episodes were lost with their
@@ -103,16 +122,54 @@ class CaseReport:
     fault_at: tuple[str, int] | None = None
     """The file and the line, from 1, of the error that keeps the case from being played; None without one."""
     lost: str = ""
+    main: tuple[str, ...] = ()
+    figure_changes: tuple[str, ...] = ()
+    version_changes: tuple[str, ...] = ()
+    new_failures: tuple[Finding, ...] = ()
+    is_impossible: bool = False
 
     @property
     def headline(self) -> str:
-        """What has changed, and the most important sentence of what follows; empty if there is none."""
+        """The most important sentence, and what has changed; empty if there is none."""
         return self.chosen_headline or next(iter(self.reasons), "")
 
     @property
     def reasons(self) -> tuple[str, ...]:
-        """All sentences of the report: what has changed, then what follows, most important first."""
-        return (*self.edits, *self.causes, *(finding.text for finding in self.explanation))
+        """All sentences of the report, in the order in which a person would give them."""
+        return tuple(reason.text for reason in self.ordered_reasons)
+
+    @property
+    def ordered_reasons(self) -> tuple[Reason, ...]:
+        """All reasons, in the order of :func:`~tltl_runtime.regression.report.reason_order.ordered_reasons`."""
+        return tuple(
+            ordered_reasons(
+                self.main,
+                self.edits,
+                self.causes,
+                self.explanation,
+                self.figure_changes,
+                self.version_changes,
+                is_worse=_is_worse(self.verdict, self.figures, self.baseline),
+            )
+        )
+
+    @property
+    def has_new_failure(self) -> bool:
+        """Whether the case passes, but fails in a way in which no episode of the baseline fails."""
+        return self.verdict == "pass" and bool(self.new_failures)
+
+    @property
+    def status(self) -> CaseStatus:
+        """What has become of the case, for people: see :data:`CaseStatus`."""
+        if self.verdict == "pass":
+            return "as_before"
+        if self.verdict == "review":
+            return "changed" if self.certain and self.figures else "uncertain"
+        if self.figures is None:
+            return "unplayable"
+        if self.baseline is not None and self.baseline.pass_rate <= self.rate_interval[1]:
+            return "unfinished_before"
+        return "impossible" if self.is_impossible else "unfinished"
 
 
 def report_on(result: JudgedCase) -> CaseReport:
@@ -124,7 +181,7 @@ def report_on(result: JudgedCase) -> CaseReport:
     summaries, summaries_before = summaries_of(now), summaries_of(before)
     played, reference = result.prepared.played, result.reference.played
     compared = reference.variant if reference.variant != played.variant else ""
-    statistics = tuple(reasons(result.judgement, case.thresholds, summaries, summaries_before, reference=compared))
+    met, *figure_changes = reasons(result.judgement, case.thresholds, summaries, summaries_before, reference=compared)
     blocked = tuple(obstacles(level, setup.fspa))
     # A case cannot pass while an outdated spec judges it.
     verdict = "review" if outdated and result.judgement.verdict == "pass" else result.judgement.verdict
@@ -132,11 +189,9 @@ def report_on(result: JudgedCase) -> CaseReport:
     if verdict != "pass" and not changes and not outdated and is_unchanged(played, reference):
         changes = (Phrase(_UNCHANGED),)
     figures, baseline = figures_of(summaries), figures_of(summaries_before)
-    # If a case fails no more often than before, its failures do not explain an uncertain verdict.
-    is_worse = result.judgement.verdict == "fail" or figures.pass_rate < baseline.pass_rate
-    most_frequent = most_frequent_end(level, setup.fspa, now, before) if is_worse else None
-    blocked_text = next((obstacle.text for obstacle in blocked), None)
-    main = blocked_text or headline(result.judgement, case.thresholds, statistics, most_frequent)
+    explanation = findings(level, setup.fspa, now, before)
+    new = new_failures(level, setup.fspa, now, before)
+    main = (*([outdated] if outdated else []), *(obstacle.text for obstacle in blocked))
     return CaseReport(
         name=case.name,
         level=level.name,
@@ -147,17 +202,23 @@ def report_on(result: JudgedCase) -> CaseReport:
         figures=figures,
         baseline=baseline,
         changes=result.judgement.changes,
-        causes=(
-            *([outdated] if outdated else []),
-            *statistics[:1],
-            *(obstacle.text for obstacle in blocked),
-            *statistics[1:],
-            *([result.lost.line] if result.lost else []),
+        main=main,
+        causes=(met, *([result.lost.line] if result.lost else [])),
+        figure_changes=tuple(figure_changes),
+        chosen_headline=headline(
+            result.judgement.verdict,
+            main,
+            telling_findings(explanation, is_worse=_is_worse(verdict, figures, baseline)),
+            (met, *figure_changes),
+            () if outdated else changes,
+            new,
+            is_met=result.judgement.rate_interval[0] >= case.thresholds.pass_rate,
         ),
-        chosen_headline=outdated
-        or (main if verdict == "pass" else "; ".join((*(edit.text for edit in changes[:1]), main))),
-        explanation=findings(level, setup.fspa, now, before),
+        explanation=explanation,
+        new_failures=new,
         edits=tuple(edit.text for edit in changes),
+        version_changes=tuple(version_changes(played, reference)),
+        is_impossible=bool(blocked) and level.game.is_infeasible(level, setup.fspa),
         mentions=union(sentence.mentions for sentence in (*blocked, *changes)),
         descriptions=result.prepared.changes,
         played=result.prepared.played,
@@ -165,6 +226,14 @@ def report_on(result: JudgedCase) -> CaseReport:
         episodes=tuple(now),
         lost=result.lost.line if result.lost else "",
     )
+
+
+def _is_worse(verdict: CaseVerdict, figures: Figures | None, baseline: Figures | None) -> bool:
+    """Whether a case fails more often than before.
+
+    Otherwise its failures do not explain an uncertain verdict.
+    """
+    return verdict == "fail" or not (figures and baseline and figures.pass_rate >= baseline.pass_rate)
 
 
 def _edits(result: JudgedCase) -> Iterator[Phrase]:
@@ -178,20 +247,40 @@ def _edits(result: JudgedCase) -> Iterator[Phrase]:
     return edits(prepared.played, before.played, prepared.changes, texts, before.texts)
 
 
-def headline(judgement: Judgement, thresholds: Thresholds, statistics: Sequence[str], most_frequent: str | None) -> str:
-    """Return what a case's headline says of its episodes: the first of these sentences that applies.
+def headline(
+    verdict: CaseVerdict,
+    main: Sequence[str],
+    telling: Sequence[Finding],
+    statistics: Sequence[str],
+    changes: Sequence[Phrase],
+    new: Sequence[Finding],
+    *,
+    is_met: bool,
+) -> str:
+    """Return what a case's headline says: its most important sentence, then the first of its ``changes``.
 
-    1. ``most_frequent``, which says how failed episodes end most often; only if it is not None and
-       the pass rate may be below the threshold;
-    2. the sentence on a changed figure;
-    3. the sentence on the pass rate.
+    The most important sentence is the first one that exists of ``main``, the ``telling`` findings, and the
+    ``statistics``. If the pass rate ``is_met``, a changed figure counts more than the rate. The
+    ``statistics`` are the sentences of :func:`~tltl_runtime.regression.report.reasons.reasons`: the first
+    is about the pass rate, the others are about changed figures.
 
-    ``statistics`` are the sentences of :func:`~tltl_runtime.regression.report.reasons.reasons`: the
-    first is about the pass rate, the others are about changed figures.
+    Of a case that passes, the headline has the first way to fail that is ``new``, if there is one, and
+    the pass rate.
     """
-    if most_frequent and judgement.rate_interval[0] < thresholds.pass_rate:
-        return most_frequent
-    return statistics[1] if len(statistics) > 1 else statistics[0]
+    if verdict == "pass" and not main:
+        return "; ".join((*(new_failure_text(finding) for finding in new[:1]), statistics[0]))
+    most_important = (
+        *main,
+        *(finding.short or finding.text for finding in telling),
+        *(statistics[1:] if is_met else ()),
+        *statistics,
+    )
+    return "; ".join((most_important[0], *(change.text for change in changes[:1])))
+
+
+def new_failure_text(finding: Finding) -> str:
+    """Return the sentence on a way to fail that the baseline does not have."""
+    return f"new failure: {finding.text}"
 
 
 def report_on_broken(case: Case, error: TltlError) -> CaseReport:

@@ -7,17 +7,23 @@ from pathlib import Path
 from typing import Final
 
 from tltl_runtime.game.registry import game_of
-from tltl_runtime.regression.report.case_report import CaseReport
+from tltl_runtime.regression.report.case_report import CaseReport, new_failure_text
+from tltl_runtime.regression.report.suite_summary import suite_summary, worst_first
 from tltl_runtime.regression.suite.dependencies import dependencies
 from tltl_runtime.regression.suite.suite import Suite, SuiteCase
 from tltl_runtime.regression.suite.trace_case import TraceCase
 from tltlc.api import fileio, workflow_command
 
-_COMMANDS: Final = {"fail": "error", "review": "warning"}
+_COMMANDS: Final = {"fail": "error", "review": "warning", "pass": "notice"}
 
 
-def workflow_commands(suite: Suite, reports: Sequence[CaseReport], root: Path) -> Iterator[str]:
+def workflow_commands(suite: Suite, reports: Sequence[CaseReport], root: Path, not_judged: int = 0) -> Iterator[str]:
     """Yield an ``::error`` for each case that fails, and a ``::warning`` for each ``review``.
+
+    A case that passes, but fails in a way that the baseline does not have, gets a ``::notice``. Before all of
+    these stands a ``::notice`` with the result of the suite in one sentence, without a file; if all cases
+    pass without new failures, there is no command at all. Failures come first, because GitHub shows
+    only the first annotations.
 
     The command annotates the first of these places that exists:
 
@@ -28,16 +34,27 @@ def workflow_commands(suite: Suite, reports: Sequence[CaseReport], root: Path) -
        preferred to the level;
     5. the file of the suite.
 
-    ``root`` is the top folder of the checkout. Paths inside it are written relative to it.
+    ``root`` is the top folder of the checkout. Paths inside it are written relative to it. ``not_judged``
+    counts the cases without a report.
     """
     cases = {case.name: case for case in suite.cases}
-    for report in reports:
-        if report.verdict in _COMMANDS:
-            path, line = report.fault_at or (_file_to_annotate(suite, cases[report.name], report), None)
-            location = {"file": _path_from_root(Path(path), root), **({"line": str(line)} if line else {})}
-            title = f"{report.name}: {report.verdict}"
-            text = "\n".join(report.reasons)
-            yield workflow_command(_COMMANDS[report.verdict], text, {**location, "title": title})
+    commands = [
+        _command(suite, cases[report.name], report, root)
+        for report, _ in worst_first([(report, None) for report in reports])
+        if report.verdict != "pass" or report.has_new_failure
+    ]
+    if commands:
+        yield workflow_command("notice", suite_summary(reports, not_judged).sentence, {"title": suite.path.stem})
+    yield from commands
+
+
+def _command(suite: Suite, case: SuiteCase, report: CaseReport, root: Path) -> str:
+    path, line = report.fault_at or (_file_to_annotate(suite, case, report), None)
+    location = {"file": _path_from_root(Path(path), root), **({"line": str(line)} if line else {})}
+    is_new = report.verdict == "pass"
+    title = f"{report.name}: {report.verdict}{', with a new failure' * is_new}"
+    texts = map(new_failure_text, report.new_failures) if is_new else report.reasons
+    return workflow_command(_COMMANDS[report.verdict], "\n".join(texts), {**location, "title": title})
 
 
 def _file_to_annotate(suite: Suite, case: SuiteCase, report: CaseReport) -> Path:

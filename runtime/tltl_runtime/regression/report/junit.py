@@ -8,7 +8,8 @@ from typing import Final
 from xml.etree import ElementTree as ET
 
 from tltl_runtime.evaluation.figures import Figures
-from tltl_runtime.regression.report.case_report import CaseReport
+from tltl_runtime.regression.report.case_report import CaseReport, new_failure_text
+from tltl_runtime.regression.report.suite_summary import suite_summary
 from tltl_runtime.regression.suite.suite import Suite
 
 _NOT_IN_XML: Final = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
@@ -22,13 +23,14 @@ viewer hides it.
 """
 
 
-def junit(suite: Suite, reports: Sequence[CaseReport], missing: Sequence[str] = ()) -> str:
+def junit(suite: Suite, reports: Sequence[CaseReport], missing: Sequence[str] = (), left_out: int = 0) -> str:
     """Format the reports as a ``testsuite`` with a ``testcase`` for each case.
 
     The schema is junit-10 of Jenkins' xUnit plugin. The reasons of a verdict are the text of an
     element in the ``testcase``. Figures are properties of the ``testsuite``, for example
     ``CASE.pass_rate``, because a ``testcase`` cannot have properties. ``missing`` are the names of
-    cases that were not judged because the run was stopped; they count as errors.
+    cases that were not judged because the run was stopped; they count as errors. The ``system-out`` of
+    the ``testsuite`` is the result of the suite in one sentence, which also counts the cases that were ``left_out``.
     """
     verdicts = [report.verdict for report in reports]
     counts = {
@@ -46,13 +48,15 @@ def junit(suite: Suite, reports: Sequence[CaseReport], missing: Sequence[str] = 
     for name in missing:
         test = ET.SubElement(tests, "testcase", {"name": _xml_text(name), "classname": _xml_text(suite.path.stem)})
         ET.SubElement(test, "error", {"type": "missing", "message": "not judged: the run was stopped before this case"})
+    ET.SubElement(tests, "system-out").text = suite_summary(reports, len(missing) + left_out).sentence
     ET.indent(root)
     return '<?xml version="1.0" encoding="UTF-8"?>\n' + ET.tostring(root, encoding="unicode") + "\n"
 
 
 def _testcase(suite: Suite, report: CaseReport) -> ET.Element:
     test = ET.Element("testcase", {"name": _xml_text(report.name), "classname": _xml_text(suite.path.stem)})
-    text = _xml_text("\n".join(report.reasons))
+    new = map(new_failure_text, report.new_failures) if report.has_new_failure else ()
+    text = _xml_text("\n".join((*new, *report.reasons)))
     if report.verdict in _ELEMENTS:
         message = _xml_text(f"{report.verdict}: {report.headline}")
         ET.SubElement(test, _ELEMENTS[report.verdict], {"type": report.verdict, "message": message}).text = text
@@ -68,6 +72,8 @@ def _properties(suite: Suite, reports: Sequence[CaseReport]) -> Iterator[tuple[s
     yield "error", f"{suite.error:g}"
     for report in reports:
         yield f"{report.name}.verdict", report.verdict
+        yield f"{report.name}.status", report.status
+        yield f"{report.name}.new_failures", str(len(report.new_failures))
         for prefix, figures in (("", report.figures), ("baseline_", report.baseline)):
             if figures:
                 yield from ((f"{report.name}.{prefix}{name}", value) for name, value in _figures(figures))

@@ -18,7 +18,7 @@ from tltl_runtime.regression.verdict.baseline import Identity
 from tltl_runtime.regression.verdict.level_texts import Texts
 from tltl_runtime.regression.verdict.verdict import Judgement, differing_figures
 from tltl_runtime.spec.episode_summary import EpisodeSummary
-from tltl_runtime.support.number_text import count_text, interval_text, percent_exactly
+from tltl_runtime.support.number_text import count_text, interval_text, mean_text, percent_exactly
 from tltlc.api import Fspa
 
 
@@ -68,9 +68,9 @@ def _count(count: int, episodes: Sequence[EpisodeSummary], others: Sequence[Epis
 
 
 def _change_text(figure: str, now: float, before: float) -> str:
-    """Say how a mean has changed: ``progress is lower, 0.62 on average; before: 0.97``."""
+    """Say how a mean has changed: ``progress is lower, 0.620 on average; before: 0.970``."""
     direction = "lower" if now < before else "higher"
-    return f"{figure} is {direction}, {now:.2f} on average; before: {before:.2f}"
+    return f"{figure} is {direction}, {mean_text(now)} on average; before: {mean_text(before)}"
 
 
 def _uncertain_change_text(
@@ -86,11 +86,11 @@ def _uncertain_change_text(
     new, old, overall = (
         fmean(getattr(episode, figure) for episode in episodes) for episodes in (now[:count], before[:count], before)
     )
-    if f"{old:.2f}" == f"{overall:.2f}":
+    if mean_text(old) == mean_text(overall):
         return _change_text(figure, new, old)
     direction = "lower" if new < old else "higher"
-    compared = f"before, in the same {count} episodes: {old:.2f} (in all {len(before)}: {overall:.2f})"
-    return f"{figure} is {direction}, {new:.2f} on average; {compared}"
+    compared = f"before, in the same {count} episodes: {mean_text(old)} (in all {len(before)}: {mean_text(overall)})"
+    return f"{figure} is {direction}, {mean_text(new)} on average; {compared}"
 
 
 def obstacles(level: Level, fspa: Fspa) -> Iterator[Phrase]:
@@ -108,7 +108,7 @@ def obstacles(level: Level, fspa: Fspa) -> Iterator[Phrase]:
 def edits(
     now: Identity, before: Identity, descriptions: Sequence[str], texts: Texts = (), texts_before: Texts = ()
 ) -> Iterator[Phrase]:
-    """Yield sentences on how a case differs from its baseline: in files, overlays and versions.
+    """Yield sentences on how a case differs from its baseline, in files and overlays.
 
     An overlay is a file that changes a level. ``now`` and ``before`` identify what was played now
     and for the baseline. ``descriptions`` say what the variant changes; each is
@@ -137,10 +137,14 @@ def edits(
         listed = ", ".join(name for name in changed_names if name in variant_files)
         yield Phrase(f"differs from `{before.variant}` by {listed}")
     yield from map(Phrase, descriptions)
+
+
+def version_changes(now: Identity, before: Identity) -> Iterator[str]:
+    """Yield a sentence for each software whose version is not that of the baseline."""
     for name, version in before.versions.items():
         if (version_now := now.versions.get(name)) != version:
             this_run = f"with {version_now}" if version_now else "without it"
-            yield Phrase(f"the baseline was recorded with {name} {version}, this run {this_run}")
+            yield f"the baseline was recorded with {name} {version}, this run {this_run}"
 
 
 def is_unchanged(now: Identity, before: Identity) -> bool:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from tltl_runtime.evaluation.figures import figures_of
-from tltl_runtime.regression.explain.explain import findings, most_frequent_end
+from tltl_runtime.regression.explain.explain import findings, new_failures
 from tltl_runtime.regression.explain.explained_episode import summaries_of
 from tltl_runtime.regression.report.case_report import (
     CaseReport,
@@ -15,6 +15,7 @@ from tltl_runtime.regression.report.case_report import (
     headline,
     one_line,
 )
+from tltl_runtime.regression.report.reason_order import telling_findings
 from tltl_runtime.regression.report.reasons import reasons
 from tltl_runtime.regression.suite.suite import LEAST_EPISODES
 from tltl_runtime.regression.suite.trace_case import TraceCase
@@ -29,14 +30,16 @@ def report_on_traces(judged: JudgedTraces) -> CaseReport:
     unread = (*_unread_texts(judged.now, ""), *_unread_texts(judged.before, " of the baseline"))
     warnings = (*_warning_texts(judged.now, ""), *_warning_texts(judged.before, " of the baseline"))
     if judgement is None:
-        return CaseReport(case.name, "", "", "review", unread, certain=False, traces=names)
+        return CaseReport(case.name, "", "", "review", (), main=unread, certain=False, traces=names)
     now, before = judged.now.episodes, judged.before.episodes
     summaries, summaries_before = summaries_of(now), summaries_of(before)
     few = tuple(_too_few_texts(judged))
-    statistics = tuple(reasons(judgement, judged.thresholds, summaries, summaries_before, are_traces=True))
+    met, *figure_changes = reasons(judgement, judged.thresholds, summaries, summaries_before, are_traces=True)
     figures, baseline = figures_of(summaries), figures_of(summaries_before)
+    explanation = findings(None, fspa, now, before)
     is_worse = judgement.verdict == "fail" or figures.pass_rate < baseline.pass_rate
-    most_frequent = most_frequent_end(None, fspa, now, before) if is_worse else None
+    new = new_failures(None, fspa, now, before)
+    main = (*few, *(unread if judgement.verdict == "review" else ()))
     return CaseReport(
         name=case.name,
         level="",
@@ -47,10 +50,20 @@ def report_on_traces(judged: JudgedTraces) -> CaseReport:
         figures=figures,
         baseline=baseline,
         changes=judgement.changes,
-        causes=(*few, *unread, *statistics, *warnings),
-        chosen_headline=next(iter((*few, *(unread if judgement.verdict == "review" else ()))), "")
-        or headline(judgement, judged.thresholds, statistics, most_frequent),
-        explanation=findings(None, fspa, now, before),
+        main=main,
+        causes=(met, *(() if judgement.verdict == "review" else unread), *warnings),
+        figure_changes=tuple(figure_changes),
+        chosen_headline=headline(
+            judgement.verdict,
+            main,
+            telling_findings(explanation, is_worse=is_worse),
+            (met, *figure_changes),
+            (),
+            new,
+            is_met=judgement.rate_interval[0] >= judged.thresholds.pass_rate,
+        ),
+        explanation=explanation,
+        new_failures=new,
         episodes=now,
         traces=names,
     )

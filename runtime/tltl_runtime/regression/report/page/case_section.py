@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 
 from markupsafe import Markup
 
+from tltl_runtime.regression.explain.explain import Finding
 from tltl_runtime.regression.report.case_report import CaseReport
 from tltl_runtime.regression.report.page.automaton import AutomatonPicture, counts_table, picture
 from tltl_runtime.regression.report.page.case_maps import case_maps
@@ -116,17 +117,14 @@ def _traces_text(count: int) -> str:
 
 
 def _reasons(case: ReportedCase, slug: str) -> Iterator[_Reason]:
-    """Yield the reasons for the verdict: what was edited, then its causes, then the findings.
+    """Yield the reasons for the verdict in their order, with links to examples."""
+    for reason in case.report.ordered_reasons:
+        yield _Reason(reason.text, _links(reason.finding, case, slug) if reason.finding else None)
 
-    A finding says what the policy does differently from the baseline. It has links to examples.
-    """
-    report = case.report
-    yield from map(_Reason, (*report.edits, *report.causes))
-    for finding in report.explanation:
-        links = (episode_links(finding, case.episodes, slug) if maps_of(case) else None) or trace_links(
-            finding, case.curves, slug
-        )
-        yield _Reason(finding.text, links)
+
+def _links(finding: Finding, case: ReportedCase, slug: str) -> Markup | None:
+    links = episode_links(finding, case.episodes, slug) if maps_of(case) else None
+    return links or trace_links(finding, case.curves, slug)
 
 
 def _drawings(case: ReportedCase, slug: str, automaton: AutomatonPicture | None) -> _Drawings | None:
