@@ -86,6 +86,7 @@ def reported(
         level=level.name,
         variant=level.variant,
         verdict=verdict,
+        rate_interval=(0.0, 0.4) if verdict == "fail" else (0.9, 1.0),
         causes=(f"met in {passed} of {len(now)} episodes",),
         figures=figures_of(summaries_of(explained_episodes)),
         baseline=figures_of(summaries_of(baseline_episodes)),

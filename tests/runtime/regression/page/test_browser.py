@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from tests.runtime.regression.page import chromium, samples
+from tltl_runtime.regression.explain.explain import Finding
 from tltl_runtime.regression.report.page.page import html_report
 from tltl_runtime.stealth.level import Box, Solid
 from tltlc.core.record import replace
@@ -48,8 +49,8 @@ def tab(browser: Browser, file: Path) -> Iterator[Tab]:
 
 
 def current(tab: Tab) -> str | None:
-    """The states of the highlighted group in the automaton of the case."""
-    groups = tab.locator(f"#{CASE} .automaton .current")
+    """The states of the highlighted group in the automaton of the case, in the picture that is shown."""
+    groups = tab.locator(f"#{CASE} .in-words .automaton .current")
     assert groups.count() == 1
     return groups.get_attribute("data-states")
 
@@ -68,21 +69,50 @@ def stop_the_clock(tab: Tab) -> None:
 
 def test_the_table_has_a_row_for_each_case(tab: Tab) -> None:
     rows = tab.locator(".verdicts tbody tr")
-    assert [row.locator("th").inner_text() for row in rows.all()] == [
-        case.report.name for case in samples.suite().cases
-    ]
-    assert rows.locator(".verdict").all_inner_texts() == ["pass", "fail", "fail"]
-    rows.nth(1).locator("th a").click()
+    names = ["cover_and_hide:v0", "broken:v0", "navigation:v0"]
+    assert [row.locator("th").inner_text() for row in rows.all()] == names, "failures come first"
+    assert rows.locator(".verdict").all_inner_texts() == ["fail", "fail", "pass"]
+    rows.nth(0).locator("th a").click()
     assert tab.url.endswith(f"#{CASE}")
     expect(tab.locator(f"#{CASE} h2")).to_be_in_viewport()
 
 
 def test_the_filter_hides_cases_that_pass(tab: Tab) -> None:
     tab.get_by_label("only findings").check()
-    assert [row.is_visible() for row in tab.locator(".verdicts tbody tr").all()] == [False, True, True]
-    assert [section.is_visible() for section in tab.locator("section.case").all()] == [False, True, True]
+    assert [row.is_visible() for row in tab.locator(".verdicts tbody tr").all()] == [True, True, False]
+    assert [section.is_visible() for section in tab.locator("section.case").all()] == [True, True, False]
     tab.get_by_label("only findings").uncheck()
     assert all(section.is_visible() for section in tab.locator("section.case").all())
+
+
+def test_the_filter_keeps_a_pass_with_a_new_failure(browser: Browser, tmp_path: Path) -> None:
+    suite = samples.suite()
+    report = replace(suite.cases[0].report, new_failures=(Finding("dies in 1 of 43 episodes", (0,)),))
+    path = tmp_path / "new.html"
+    path.write_text(html_report(replace(suite, cases=(replace(suite.cases[0], report=report),))), encoding="utf-8")
+    with chromium.opened(browser, path, **WIDE) as tab:
+        tab.get_by_label("only findings").check()
+        assert tab.locator("section.case").is_visible()
+        assert tab.locator(".verdicts .verdict.new").is_visible()
+
+
+def test_one_switch_writes_all_formulas_in_symbols(browser: Browser, file: Path) -> None:
+    with chromium.opened(browser, file, f"#{CASE}/0/20", **WIDE) as tab:
+        section = tab.locator(f"#{CASE}")
+        step = section.locator(".moment").inner_text()
+        assert "Reach near(" in (section.locator(".automaton:visible").text_content() or "")
+        assert "Reach near(" in section.locator(".state").inner_text()
+        section.get_by_label("symbols").check()
+        assert "◇near(" in section.locator(".state").inner_text()
+        assert "Reach" not in section.locator(".state").inner_text()
+        # The switches of the other cases follow, and the episode stays open.
+        assert tab.locator("#navigation-v0").get_by_label("symbols").is_checked()
+        assert [picture.is_visible() for picture in tab.locator(".in-words .automaton").all()] == [False, False]
+        assert [picture.is_visible() for picture in tab.locator(".in-symbols .automaton").all()] == [True, True]
+        assert section.locator(".moment").inner_text() == step
+        assert section.locator(".in-symbols .automaton .current").count() == 1
+        section.get_by_label("words").check()
+        assert "Reach near(" in section.locator(".state").inner_text()
 
 
 @pytest.fixture(name="still")
@@ -364,7 +394,17 @@ def test_nothing_scrolls_sideways_on_a_small_screen(browser: Browser, file: Path
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 def test_texts_have_enough_contrast(browser: Browser, file: Path, scheme: str) -> None:
     with chromium.opened(browser, file, f"#{CASE}/0/20", color_scheme=scheme, **WIDE) as tab:
-        for selector in (".verdict.pass", ".verdict.fail", ".facts", ".hint", ".verdicts a", ".reasons li", ".state"):
+        for selector in (
+            ".verdict.pass",
+            ".verdict.fail",
+            ".sentence",
+            ".facts",
+            ".cell-reward",
+            ".hint",
+            ".verdicts a",
+            ".reasons li",
+            ".state",
+        ):
             colour = tab.locator(selector).first.evaluate("element => getComputedStyle(element).color")
             paper = tab.evaluate("getComputedStyle(document.body).backgroundColor")
             assert contrast(colour, paper) >= 4.5, (selector, colour, paper)
@@ -403,4 +443,4 @@ def test_without_scripts_a_note_is_shown(browser: Browser, file: Path) -> None:
     with chromium.opened(browser, file, java_script_enabled=False, **WIDE) as tab:
         assert tab.locator("noscript p").is_visible()
         assert tab.locator(".verdicts tbody tr").count() == len(samples.suite().cases)
-        assert tab.locator(".automaton").count() == 2
+        assert tab.locator(".automaton:visible").count() == 2

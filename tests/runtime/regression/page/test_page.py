@@ -66,10 +66,12 @@ def page() -> Page:
 
 def test_each_case_has_a_row_and_a_section() -> None:
     suite = samples.suite()
+    assert [case.report.verdict for case in suite.cases] == ["pass", "fail", "fail"]
     sections = [element for element in page().all("section") if "case" in (element["class"] or "")]
-    assert [element["data-verdict"] for element in sections] == [case.report.verdict for case in suite.cases]
+    assert [element["data-verdict"] for element in sections] == ["fail", "fail", "pass"], "failures come first"
+    assert [element["id"] for element in sections] == ["cover_and_hide-v0", "broken-v0", "navigation-v0"]
     rows = [element for element in page().all("tr") if "data-verdict" in element]
-    assert [element["data-verdict"] for element in rows] == [case.report.verdict for case in suite.cases]
+    assert [element["data-verdict"] for element in rows] == ["fail", "fail", "pass"]
     for case in suite.cases:
         assert case.report.name in page().texts
         assert set(case.report.reasons[0].split("`")[:1]) <= set(page().texts)
@@ -79,10 +81,61 @@ def test_each_case_has_a_row_and_a_section() -> None:
     ]
 
 
-def test_the_page_says_that_actions_are_sampled() -> None:
+def test_the_result_in_a_sentence_comes_first() -> None:
+    headings = [text.strip() for text in page().texts if text.strip()]
+    title = headings.index("Regression report: sample")
+    assert headings[title + 1] == (
+        "1 of 3 levels can no longer be finished by its agent; 1 cannot be played; 1 plays as before."
+    )
+
+
+def test_versions_seeds_and_hashes_are_at_the_end() -> None:
     suite = samples.suite()
     case = replace(suite.cases[0], report=replace(suite.cases[0].report, played=PLAYED))
-    assert "actions sampled, as in training" in html_report(replace(suite, cases=(case,)))
+    text = html_report(replace(suite, cases=(case,)))
+    body, end = text.split('<section class="provenance"')
+    end = end.partition("</section>")[0]
+    for fact in ("Actions sampled, as in training", "seed 7", "python 3.11", "a" * 12, "b" * 12, "c" * 12):
+        assert fact in end and fact not in body
+    assert end.count("<tr>") == 2 and "<code>aaaaaaaaaaaa</code>" in end
+
+
+def test_the_reward_is_the_last_column_and_the_reason_the_first_after_the_verdict() -> None:
+    heads = re.findall(r'<th scope="col"[^>]*>(\w+)</th>', html_report(samples.suite()))
+    assert heads[:6] == ["Case", "Verdict", "Why", "Met", "Progress", "Reward"]
+
+
+def test_a_new_failure_in_a_pass_is_marked() -> None:
+    suite = samples.suite()
+    finding = Finding("dies in 1 of 43 episodes; before: in 0 of 200", (0,))
+    case = replace(suite.cases[0], report=replace(suite.cases[0].report, new_failures=(finding,)))
+    text = html_report(replace(suite, cases=(case, *suite.cases[1:])))
+    parsed = Page(text)
+    marked = [element for _, element in parsed.elements if "data-new-failure" in element]
+    assert [element["data-verdict"] for element in marked] == ["pass", "pass"], "the row and the section"
+    assert parsed.texts.count("new failure") == 2
+    (first,) = re.findall(r'<ul class="reasons">\n<li class="new">(.*?)</li>', text)
+    assert first.startswith("new failure: dies in 1 of 43 episodes") and "#navigation-v0/0/" in first
+    assert any("1 plays as before, with a new failure" in part for part in parsed.texts)
+    assert not any("data-new-failure" in element for _, element in page().elements)
+
+
+def test_formulas_are_in_words_and_the_switch_shows_symbols() -> None:
+    text = html_report(replace(samples.suite(), cases=samples.suite().cases[:1]))
+    words, symbols = (
+        re.findall(rf'<div class="{kind}">(<svg class="automaton".*?</svg>)</div>', text, re.DOTALL)
+        for kind in ("in-words", "in-symbols")
+    )
+    assert len(words) == len(symbols) == 1
+    assert "Reach near(exit)" in words[0] and "◇" not in words[0]
+    assert "◇near(exit)" in symbols[0] and "Reach" not in symbols[0]
+    (table,) = re.findall(r'<table class="counts-table">.*?</table>', text, re.DOTALL)
+    assert '<span class="in-words">Reach near(exit).</span><span class="in-symbols">◇near(exit)</span>' in table
+    parsed = Page(text)
+    (case,) = parsed.data["cases"]
+    assert "Reach near(exit)." in case["states"] and "◇near(exit)" in case["symbols"]
+    switch = [element for element in parsed.all("input") if element.get("name") == "notation"]
+    assert [(element["value"], "checked" in element) for element in switch] == [("english", True), ("unicode", False)]
 
 
 def test_the_page_shows_the_clauses_as_they_were_written() -> None:
@@ -142,7 +195,7 @@ def test_ids_of_cases_and_of_the_page_differ() -> None:
     cases = tuple(replace(case, report=replace(case.report, name=name)) for name in names)
     parsed = Page(html_report(SuiteReport("names", 0, 0.05, {}, cases)))
     ids = [attributes["id"] for _, attributes in parsed.elements if "id" in attributes]
-    assert len(ids) == len(set(ids)) == 2 * len(names) + 2
+    assert len(ids) == len(set(ids)) == 2 * len(names) + 3
 
 
 def test_explanations_link_to_the_recorded_episodes() -> None:
@@ -162,8 +215,13 @@ def test_equal_sentences_link_to_their_own_episodes() -> None:
     explanation = (Finding("it fails", (0,)), Finding("it fails", (1,)))
     report = replace(case.report, causes=("met in 0", "it fails"), explanation=explanation, edits=("it fails",))
     text = html_report(SuiteReport("equal", 0, 0.05, {}, (replace(case, report=report),)))
-    lines = re.findall(r"<li>it fails(.*?)</li>", text)
-    assert [re.findall(r"#cover_and_hide-v0/(\d)/", line) for line in lines] == [["0"], [], ["1"], []]
+    lines = re.findall(r'<li class="(\w+)">it fails(.*?)</li>', text)
+    assert [(kind, re.findall(r"#cover_and_hide-v0/(\d)/", line)) for kind, line in lines] == [
+        ("finding", ["0"]),
+        ("edit", []),
+        ("finding", ["1"]),
+        ("cause", []),
+    ]
 
 
 def test_nothing_is_loaded_from_outside() -> None:

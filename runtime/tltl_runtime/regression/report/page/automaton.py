@@ -13,7 +13,7 @@ from markupsafe import Markup
 from tltl_runtime.regression.report.page.render import render
 from tltl_runtime.regression.report.page.traffic import Traffic
 from tltl_runtime.support.markup import coordinate
-from tltlc.api import Diagnostic, Fspa, TltlError, compiler, label_text, record, replace
+from tltlc.api import Diagnostic, Fspa, Notation, TltlError, compiler, label_text, record, replace
 
 _LAYOUT_LIMIT_S: Final = 10.0
 """The time limit, in seconds, of each attempt to lay out an automaton."""
@@ -35,27 +35,34 @@ _BADGE_HEIGHT: Final = 16.0
 class AutomatonPicture:
     """The picture of a spec's automaton.
 
-    ``svg`` is the picture as SVG, or None if the automaton could not be laid out. ``notes`` are
-    sentences on what the picture does not show, and why.
+    ``svg`` is the picture as SVG with its formulas in words, or None if the automaton could not be laid
+    out. ``symbols`` is the picture with the formulas in symbols, or None. ``notes`` are sentences on what
+    the picture does not show, and why.
     """
 
     svg: bytes | None
     notes: tuple[str, ...]
+    symbols: bytes | None = None
 
 
 def draw_automaton(fspa: Fspa) -> AutomatonPicture:
-    """Draw an automaton, without the counts of episodes.
+    """Draw an automaton in words and in symbols, without the counts of episodes.
 
-    A separate process lays it out. Each attempt may take 10 seconds. If that fails, the picture has
-    no SVG.
+    A separate process lays out each picture. Each attempt may take 10 seconds. If that fails, the
+    picture has no SVG.
     """
+    words = _draw(fspa, "english")
+    return words if words.svg is None else replace(words, symbols=_draw(fspa, "unicode").svg)
+
+
+def _draw(fspa: Fspa, notation: Notation) -> AutomatonPicture:
     diagnostics: list[Diagnostic] = []
     try:
         # The page already shows the description of the spec.
         files = compiler.emit(
             "svg",
             replace(fspa, doc=""),
-            compiler.BackendOptions(layout_limit_s=_LAYOUT_LIMIT_S, report=diagnostics.append),
+            compiler.BackendOptions(notation, layout_limit_s=_LAYOUT_LIMIT_S, report=diagnostics.append),
         )
     except TltlError as error:
         return AutomatonPicture(None, tuple(_sentence(diagnostic) for diagnostic in error.diagnostics))
@@ -261,6 +268,11 @@ def _sentence(diagnostic: Diagnostic) -> str:
     return f"{text}: {diagnostic.help}" if diagnostic.severity != "note" and diagnostic.help else f"{text}."
 
 
+def label_texts(fspa: Fspa, state: int) -> tuple[str, str]:
+    """Return what remains to be done in a state, in words and in symbols."""
+    return label_text(fspa, state), label_text(fspa, state, "unicode")
+
+
 def counts_table(fspa: Fspa, now: Traffic, before: Traffic) -> Markup:
     """Return an HTML table with a row for each state of the automaton.
 
@@ -268,7 +280,7 @@ def counts_table(fspa: Fspa, now: Traffic, before: Traffic) -> Markup:
     it, ``now`` and ``before`` (in the baseline).
     """
     rows = [
-        (state.id, label_text(fspa, state.id), [*_counts(state.id, now), *_counts(state.id, before)])
+        (state.id, label_texts(fspa, state.id), [*_counts(state.id, now), *_counts(state.id, before)])
         for state in fspa.states
     ]
     return render("counts_table.html", rows=rows)

@@ -10,9 +10,9 @@ from tltl_runtime.game.level import Level
 from tltl_runtime.game.moments import has_clock
 from tltl_runtime.game.packing import runs, x_steps, y_steps
 from tltl_runtime.regression.explain.explained_episode import ExplainedEpisode
+from tltl_runtime.regression.report.page.automaton import label_texts
 from tltl_runtime.regression.report.page.contents import ReportedCase, maps_of
 from tltl_runtime.regression.report.page.heat import Heat, failed_ends, time_spent
-from tltlc.api import label_text
 
 _RESOLUTION_CM: Final = 5
 """The resolution of trajectories, in centimetres.
@@ -30,11 +30,13 @@ def case_data(case: ReportedCase, slug: str) -> dict[str, Any] | None:
     if level is None or fspa is None or maps is None:
         return None
     before = level if case.baseline_level is None or case.baseline_level.bounds is None else case.baseline_level
+    labels = [label_texts(fspa, state.id) for state in fspa.states]
     return {
         "slug": slug,
         "unit": "s" if _is_timed(case) else "steps",
         "map": maps.map_data(level),
-        "states": [label_text(fspa, state.id) for state in fspa.states],
+        "states": [words for words, _ in labels],
+        "symbols": [symbols for _, symbols in labels],
         "now": _episodes_data(level, maps.metre(level), case.report.episodes),
         "before": _episodes_data(before, maps.metre(before), case.before),
         "episodes": [maps.episode_data(level, index, case.episodes[index]) for index in sorted(case.episodes)],

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import base64
 from collections.abc import Iterator, Sequence
+from typing import Literal
 
 from markupsafe import Markup
 
 from tltl_runtime.regression.explain.explain import Finding
-from tltl_runtime.regression.report.case_report import CaseReport
-from tltl_runtime.regression.report.page.automaton import AutomatonPicture, counts_table, picture
+from tltl_runtime.regression.report.case_report import CaseReport, new_failure_text
+from tltl_runtime.regression.report.page.automaton import AutomatonPicture, counts_table, label_texts, picture
 from tltl_runtime.regression.report.page.case_maps import case_maps
 from tltl_runtime.regression.report.page.contents import NotRun, ReportedCase, maps_of
 from tltl_runtime.regression.report.page.curves import progress_curves, progress_distribution
@@ -18,7 +19,8 @@ from tltl_runtime.regression.report.page.missing_map import missing_map_text
 from tltl_runtime.regression.report.page.player_panel import player_panel
 from tltl_runtime.regression.report.page.render import render
 from tltl_runtime.regression.report.page.trace_charts import trace_charts
-from tltl_runtime.regression.report.page.traffic import traffic
+from tltl_runtime.regression.report.page.traffic import Traffic, traffic
+from tltl_runtime.regression.report.reason_order import ReasonKind
 from tltlc.api import Fspa, formula_text, record
 
 
@@ -26,10 +28,13 @@ from tltlc.api import Fspa, formula_text, record
 class _Reason:
     """A reason for the verdict: a sentence, and links to example episodes or traces on the page.
 
+    ``symbols`` is the sentence with its formula in symbols. ``kind`` is the CSS class of the sentence.
     ``links`` is None if the page shows no example.
     """
 
     text: str
+    symbols: str
+    kind: ReasonKind | Literal["new"]
     links: Markup | None = None
 
 
@@ -37,8 +42,8 @@ class _Reason:
 class _Drawings:
     """The pictures and tables in the section of a case with an automaton.
 
-    - ``automaton`` is the picture of the automaton, or None if it could not be laid out; ``notes`` say
-      what it does not show.
+    - ``automaton`` is the picture of the automaton, in words and in symbols, or None if it could not be
+      laid out; ``notes`` say what it does not show. ``has_symbols`` says whether symbols differ from words.
     - ``maps`` are the maps of the level, or None.
     - ``player`` is the panel that plays recorded episodes on the map, or None if there is no map.
     - ``charts`` are pictures of recorded traces, or of recorded episodes without a map, or None.
@@ -55,6 +60,7 @@ class _Drawings:
     curves: Markup | None
     distribution: Markup
     table: Markup
+    has_symbols: bool
 
 
 def case_section(case: ReportedCase, slug: str, automaton: AutomatonPicture | None) -> Markup:
@@ -69,7 +75,8 @@ def case_section(case: ReportedCase, slug: str, automaton: AutomatonPicture | No
         slug=slug,
         report=case.report,
         facts=_facts(case.report),
-        goal=None if case.fspa is None else _goal_text(case.fspa, case.clauses),
+        goal=None if case.fspa is None else _goal_texts(case.fspa, case.clauses),
+        is_new_failure=case.report.has_new_failure,
         reasons=tuple(_reasons(case, slug)),
         curve=base64.b64encode(case.curve).decode(),
         has_baseline=bool(case.before),
@@ -80,9 +87,13 @@ def case_section(case: ReportedCase, slug: str, automaton: AutomatonPicture | No
     )
 
 
-def _goal_text(fspa: Fspa, clauses: Sequence[str]) -> str:
-    """Return what a spec asks for: its clauses as the author wrote them; if they are unknown, a sentence."""
-    return ", ".join(f"`{clause}`" for clause in clauses) or formula_text(fspa)
+def _goal_texts(fspa: Fspa, clauses: Sequence[str]) -> tuple[str, str]:
+    """Return what a spec asks for, in words and in symbols.
+
+    The words are the clauses as the author wrote them; if they are unknown, a sentence.
+    """
+    words = ", ".join(f"`{clause}`" for clause in clauses) or formula_text(fspa)
+    return words, f"`{formula_text(fspa, 'unicode')}`"
 
 
 def not_run_section(case: NotRun, slug: str) -> Markup:
@@ -102,11 +113,7 @@ def _facts(report: CaseReport) -> list[str]:
     if report.reference:
         facts.append(f"compared with {report.reference.variant}")
     if report.played:
-        facts += [
-            f"spec {report.played.spec}",
-            f"policy {report.played.policy[:12]}",
-            "actions sampled, as in training",
-        ]
+        facts.append(f"spec {report.played.spec}")
     if report.figures and not report.certain:
         facts.append("not certain, though all of its episodes were played")
     return facts
@@ -117,9 +124,19 @@ def _traces_text(count: int) -> str:
 
 
 def _reasons(case: ReportedCase, slug: str) -> Iterator[_Reason]:
-    """Yield the reasons for the verdict in their order, with links to examples."""
-    for reason in case.report.ordered_reasons:
-        yield _Reason(reason.text, _links(reason.finding, case, slug) if reason.finding else None)
+    """Yield the reasons for the verdict in their order, with links to examples.
+
+    Before them, yield the new failures of a case that passes.
+    """
+    report = case.report
+    if report.has_new_failure:
+        for finding in report.new_failures:
+            text = new_failure_text(finding)
+            yield _Reason(text, text, "new", _links(finding, case, slug))
+    for reason in report.ordered_reasons:
+        symbols = (reason.finding.symbols if reason.finding else "") or reason.text
+        links = _links(reason.finding, case, slug) if reason.finding else None
+        yield _Reason(reason.text, symbols, reason.kind, links)
 
 
 def _links(finding: Finding, case: ReportedCase, slug: str) -> Markup | None:
@@ -134,7 +151,7 @@ def _drawings(case: ReportedCase, slug: str, automaton: AutomatonPicture | None)
     noun = "traces" if case.report.traces else "episodes"
     now, before = traffic(case.report.episodes, noun), traffic(case.before, noun)
     return _Drawings(
-        automaton=None if automaton.svg is None else picture(fspa, automaton.svg, now, before),
+        automaton=None if automaton.svg is None else _pictures(fspa, automaton.svg, automaton.symbols, now, before),
         notes=automaton.notes,
         maps=None if level is None or level_maps is None else case_maps(case, level, level_maps),
         player=None if level_maps is None else player_panel(fspa, case.episodes, level_maps.values),
@@ -142,4 +159,14 @@ def _drawings(case: ReportedCase, slug: str, automaton: AutomatonPicture | None)
         curves=progress_curves(case.episodes) if case.episodes else None,
         distribution=progress_distribution(case.report.episodes, case.before),
         table=counts_table(fspa, now, before),
+        has_symbols=any(words != symbols for words, symbols in (label_texts(fspa, state.id) for state in fspa.states)),
     )
+
+
+def _pictures(fspa: Fspa, words: bytes, symbols: bytes | None, now: Traffic, before: Traffic) -> Markup:
+    """Return the pictures of an automaton in words and in symbols; the switch of the page shows one of them."""
+    shown = picture(fspa, words, now, before)
+    if symbols is None:
+        return shown
+    frame = Markup('<div class="{}">{}</div>')
+    return frame.format("in-words", shown) + frame.format("in-symbols", picture(fspa, symbols, now, before))

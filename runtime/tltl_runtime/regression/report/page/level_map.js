@@ -26,6 +26,22 @@ function prose(text) {
   });
 }
 
+/** The nodes of the label of a state: in words and, if it differs, in symbols. The page shows one of the two. */
+function label({ states, symbols }, state) {
+  if (states[state] === symbols[state]) return prose(states[state]);
+  return [["in-words", states], ["in-symbols", symbols]].map(([kind, texts]) => {
+    const span = document.createElement("span");
+    span.className = kind;
+    span.append(...prose(texts[state]));
+    return span;
+  });
+}
+
+/** A number with three significant digits, or as a whole number if it has more digits. */
+function threeDigits(value) {
+  return Math.abs(value) < 1000 ? value.toPrecision(3) : value.toFixed(0);
+}
+
 class LevelMap {
   /** `svg` is the map, `facts` the data of its level, `colours` the colours of the automaton's states. */
   constructor(svg, facts, colours) {

@@ -16,7 +16,8 @@ from tltl_runtime.regression.report.page.case_data import case_data
 from tltl_runtime.regression.report.page.case_section import case_section, not_run_section
 from tltl_runtime.regression.report.page.contents import SuiteReport, maps_of
 from tltl_runtime.regression.report.page.render import render
-from tltl_runtime.regression.report.page.summary import summary
+from tltl_runtime.regression.report.page.summary import provenance, summary
+from tltl_runtime.regression.report.suite_summary import worst_first
 from tltl_runtime.regression.suite.slugs import slugs
 from tltl_runtime.support.markup import script_json
 from tltlc.api import Fspa
@@ -49,9 +50,13 @@ def html_report(suite: SuiteReport) -> str:
         has_maps=bool(maps),
         summary=summary(suite, names),
         sections=[
-            *(case_section(case, slug, pictures.get(case.fspa)) for case, slug in pairs),
+            *(
+                case_section(case, slug, pictures.get(case.fspa))
+                for _, (case, slug) in worst_first([(case.report, (case, slug)) for case, slug in pairs])
+            ),
             *(not_run_section(case, slug) for case, slug in not_run),
         ],
+        provenance=provenance(suite),
         data=script_json(_data([case_data(case, slug) for case, slug in pairs])),
         script=Markup(script),
     )

@@ -27,7 +27,10 @@ class Player {
     ]);
     this.groups = new Map();
     for (const group of section.querySelectorAll(".automaton [data-states]")) {
-      for (const state of group.dataset.states.split(" ")) this.groups.set(Number(state), group);
+      // Each state is in two pictures: one in words, one in symbols.
+      for (const state of group.dataset.states.split(" ")) {
+        this.groups.set(Number(state), [...(this.groups.get(Number(state)) ?? []), group]);
+      }
     }
     this.curves = [...section.querySelectorAll(".curve")];
     this.cursor = section.querySelector(".cursor");
@@ -75,11 +78,11 @@ class Player {
     this.row = Math.max(0, Math.min(this.last, row));
     this.scrub.value = String(this.row);
     const state = episode.state[this.row];
-    const seconds = this.facts.unit === "s" ? `, ${(episode.time[this.row] / 1000).toFixed(2)} s` : "";
+    const seconds = this.facts.unit === "s" ? `, ${threeDigits(episode.time[this.row] / 1000)} s` : "";
     this.moment.textContent = `step ${this.row} of ${this.last}${seconds}`;
     this.scrub.setAttribute("aria-valuetext", `${this.moment.textContent}, state ${state}`);
     const end = this.row < this.last ? "" : ` The end: ${episode.why}.`;
-    this.stateText.replaceChildren(...prose(`State ${state}: ${this.facts.states[state]}${end}`));
+    this.stateText.replaceChildren(`State ${state}: `, ...label(this.facts, state), ...prose(end));
     this.stateText.style.setProperty("--state", this.map.colours[state]);
     const values = { progress: episode.progress[this.row] / 1000, health: (episode.health?.[this.row] ?? 0) / 100 };
     for (const [name, meter, number] of this.bars) {
@@ -175,12 +178,13 @@ class Player {
   }
 
   #highlight(state) {
-    const group = this.groups.get(state);
-    if (group?.classList.contains("current")) return;
-    for (const other of this.groups.values()) other.classList.remove("current");
-    if (!group) return;
-    group.classList.add("current");
+    const groups = this.groups.get(state);
+    if (groups?.[0].classList.contains("current")) return;
+    for (const other of [...this.groups.values()].flat()) other.classList.remove("current");
+    if (!groups) return;
+    for (const group of groups) group.classList.add("current");
     // A wide automaton scrolls within its box.  Scroll the state into view, but not the page.
+    const group = groups.find((shown) => shown.getClientRects().length) ?? groups[0];
     const box = group.closest(".scroll");
     const [inner, outer] = [group.getBoundingClientRect(), box.getBoundingClientRect()];
     if (inner.left < outer.left || inner.right > outer.right) {

@@ -12,7 +12,8 @@ class CaseView {
     this.player = new Player(this.section, facts, map, moved);
     this.legend = this.section.querySelector(".legend.shown");
     this.isDrawn = false;
-    this.section.querySelector(".toggles").addEventListener("change", () => {
+    this.section.querySelector(".toggles").addEventListener("change", ({ target }) => {
+      if (target.name === "notation") return;
       if (this.player.episode) history.replaceState(null, "", `#${facts.slug}`);
       this.showAll();
     });
@@ -88,10 +89,11 @@ class CaseView {
   }
 
   #states(states) {
-    return states.map((state) => ["trajectory", this.maps.now.colours[state], `state ${state}: ${this.facts.states[state]}`]);
+    const { colours } = this.maps.now;
+    return states.map((state) => ["trajectory", colours[state], [`state ${state}: `, ...label(this.facts, state)]]);
   }
 
-  /** Each row has a class, a colour and a text.  Ends and bodies are drawn as marks, the rest as patches of colour. */
+  /** Each row has a class, a colour, and a text or its nodes.  Ends and bodies are drawn as marks, the rest as patches of colour. */
   #fillLegend(rows) {
     this.legend.replaceChildren(
       ...rows.map(([kind, colour, text]) => {
@@ -103,7 +105,7 @@ class CaseView {
         else if (kind.startsWith("body ")) draw(draw(sign, "g", { class: kind }), "circle", { r: 6, ...filled });
         else draw(sign, "rect", { class: `patch ${kind}`, x: -8, y: -5, width: 16, height: 10, ...filled });
         const words = document.createElement("span");
-        words.append(...prose(text));
+        words.append(...(typeof text === "string" ? prose(text) : text));
         row.append(words);
         return row;
       }),
@@ -130,7 +132,15 @@ class Report {
     // A case of recorded traces has no map: its toggle switches the automaton alone.
     for (const form of document.querySelectorAll(".toggles.without-map")) {
       form.addEventListener("change", () => {
-        form.closest(".case").dataset.when = new FormData(form).get("when");
+        form.closest(".case").dataset.when = new FormData(form).get("when") ?? "now";
+      });
+    }
+    // Each case has the switch, next to its automaton; all switches are one.
+    const switches = [...document.querySelectorAll('.toggles [name="notation"]')];
+    for (const button of switches) {
+      button.addEventListener("change", () => {
+        document.documentElement.dataset.notation = button.value;
+        for (const other of switches) other.checked = other.value === button.value;
       });
     }
     addEventListener("hashchange", () => this.#follow());
@@ -201,7 +211,7 @@ class Report {
 
   #applyFilter() {
     for (const element of document.querySelectorAll("[data-verdict]")) {
-      element.hidden = this.filter.checked && element.dataset.verdict === "pass";
+      element.hidden = this.filter.checked && element.dataset.verdict === "pass" && !("newFailure" in element.dataset);
     }
   }
 }

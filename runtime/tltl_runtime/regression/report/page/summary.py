@@ -11,12 +11,13 @@ from tltl_runtime.regression.report.case_report import CaseReport
 from tltl_runtime.regression.report.page.contents import SuiteReport
 from tltl_runtime.regression.report.page.render import render
 from tltl_runtime.regression.report.retraining_result import OUTCOMES
+from tltl_runtime.regression.report.suite_summary import suite_summary, worst_first
 from tltl_runtime.regression.verdict.verdict import CaseVerdict
 from tltl_runtime.support.markup import coordinate
-from tltl_runtime.support.number_text import percent
+from tltl_runtime.support.number_text import mean_text, percent
 from tltlc.api import record
 
-_VERDICTS: tuple[CaseVerdict, ...] = ("pass", "review", "fail")
+_VERDICTS: tuple[CaseVerdict, ...] = ("fail", "review", "pass")
 
 
 @record
@@ -64,7 +65,8 @@ class _Row:
 
     ``slug`` is the case's short name in addresses within the page. ``retrained`` is the outcome of
     retraining its policy, or None. ``pass_rate``, ``progress`` and ``reward`` are None for a case that
-    could not be played or judged.
+    could not be played or judged. ``is_new_failure`` says that the case
+    passes, but fails in a way that its baseline does not have.
     """
 
     name: str
@@ -75,6 +77,7 @@ class _Row:
     progress: _Mean | None
     reward: _Mean | None
     headline: str
+    is_new_failure: bool
 
 
 def summary(suite: SuiteReport, slugs: Sequence[str]) -> Markup:
@@ -85,21 +88,28 @@ def summary(suite: SuiteReport, slugs: Sequence[str]) -> Markup:
     """
     reports = [case.report for case in suite.cases]
     verdicts = [report.verdict for report in reports]
+    rows = [_row(report, slug) for report, slug in worst_first(list(zip(reports, slugs, strict=False)))]
+    return render(
+        "summary.html",
+        suite=suite,
+        sentence=suite_summary(reports, len(suite.not_run)).sentence,
+        counts=[(verdict, verdicts.count(verdict)) for verdict in _VERDICTS if verdict in verdicts],
+        has_bars=any(report.figures for report in reports),
+        rows=rows,
+        not_run=list(zip(suite.not_run, slugs[len(reports) :], strict=True)),
+    )
+
+
+def provenance(suite: SuiteReport) -> Markup:
+    """Return the end of the page as HTML: the seed, the error, the versions, and what was played."""
     facts = [
         *([] if suite.seed is None else [f"seed {suite.seed}"]),
         f"probability that any certain fail or review is wrong, or any pass has too low a rate: at most "
         f"{suite.error:.3g}",
         *(f"{name} {version}" for name, version in suite.versions.items()),
     ]
-    return render(
-        "summary.html",
-        suite=suite,
-        counts=[(verdict, verdicts.count(verdict)) for verdict in _VERDICTS if verdict in verdicts],
-        facts=facts,
-        has_bars=any(report.figures for report in reports),
-        rows=[_row(report, slug) for report, slug in zip(reports, slugs, strict=False)],
-        not_run=list(zip(suite.not_run, slugs[len(reports) :], strict=True)),
-    )
+    played = [(case.report.name, case.report.played) for case in suite.cases if case.report.played]
+    return render("provenance.html", facts=facts, played=played)
 
 
 def _row(report: CaseReport, slug: str) -> _Row:
@@ -113,11 +123,12 @@ def _row(report: CaseReport, slug: str) -> _Row:
         progress=_mean(now.progress.mean, before.progress.mean if before else None) if now else None,
         reward=_mean(now.reward.mean, before.reward.mean if before else None) if now else None,
         headline=report.headline,
+        is_new_failure=report.has_new_failure,
     )
 
 
 def _mean(now: float, before: float | None) -> _Mean:
-    return _Mean(f"{now:.2f}", "" if before is None else f"{before:.2f}")
+    return _Mean(mean_text(now), "" if before is None else mean_text(before))
 
 
 def _pass_rate(now: Figures, before: Figures | None) -> _PassRate:
