@@ -107,8 +107,10 @@ def test_the_reward_is_the_last_column_and_the_reason_the_first_after_the_verdic
 
 def test_a_new_failure_in_a_pass_is_marked() -> None:
     suite = samples.suite()
-    finding = Finding("dies in 1 of 43 episodes; before: in 0 of 200", (0,))
-    case = replace(suite.cases[0], report=replace(suite.cases[0].report, new_failures=(finding,)))
+    finding = Finding("dies in 1 of 43 episodes; before: in 0 of 200", (0,), short="dies in 1 of 43 episodes")
+    explanation = (replace(finding, text="dies in 1 of 43 episodes; before: in 0 of 200 episodes"),)
+    report = replace(suite.cases[0].report, new_failures=(finding,), explanation=explanation)
+    case = replace(suite.cases[0], report=report)
     text = html_report(replace(suite, cases=(case, *suite.cases[1:])))
     parsed = Page(text)
     marked = [element for _, element in parsed.elements if "data-new-failure" in element]
@@ -116,6 +118,7 @@ def test_a_new_failure_in_a_pass_is_marked() -> None:
     assert parsed.texts.count("new failure") == 2
     (first,) = re.findall(r'<ul class="reasons">\n<li class="new">(.*?)</li>', text)
     assert first.startswith("new failure: dies in 1 of 43 episodes") and "#navigation-v0/0/" in first
+    assert text.count("dies in 1 of 43 episodes") == 1, "it is told once"
     assert any("1 plays as before, with a new failure" in part for part in parsed.texts)
     assert not any("data-new-failure" in element for _, element in page().elements)
 

@@ -126,14 +126,17 @@ def _traces_text(count: int) -> str:
 def _reasons(case: ReportedCase, slug: str) -> Iterator[_Reason]:
     """Yield the reasons for the verdict in their order, with links to examples.
 
-    Before them, yield the new failures of a case that passes.
+    Before them, yield the new failures of a case that passes; leave out the reasons that repeat them.
     """
     report = case.report
-    if report.has_new_failure:
-        for finding in report.new_failures:
-            text = new_failure_text(finding)
-            yield _Reason(text, text, "new", _links(finding, case, slug))
+    new = report.new_failures if report.has_new_failure else ()
+    for finding in new:
+        text = new_failure_text(finding)
+        yield _Reason(text, text, "new", _links(finding, case, slug))
+    told = {finding.short for finding in new if finding.short}
     for reason in report.ordered_reasons:
+        if reason.short in told:
+            continue
         symbols = (reason.finding.symbols if reason.finding else "") or reason.text
         links = _links(reason.finding, case, slug) if reason.finding else None
         yield _Reason(reason.text, symbols, reason.kind, links)
