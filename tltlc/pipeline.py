@@ -113,10 +113,13 @@ class Session:
     def program(self) -> ResolvedFile:
         """The specs and tests of the source text, with all names resolved.
 
-        Errors: :class:`TltlError` with the diagnostics of parsing if the text has syntax errors; with
-        the diagnostics of parsing and resolving if the text has other errors.
+        Errors: :class:`TltlError` with the diagnostics of parsing and resolving. If the text has syntax
+        errors, those of resolving are only the errors that cannot be consequences of them.
         """
-        stop_at_errors(self.syntax_errors)
+        if any(diagnostic.severity == "error" for diagnostic in self.syntax_errors):
+            from tltlc.resolve.follow_up_errors import independent_errors
+
+            raise TltlError(independent_errors(self.module, self.syntax_errors, self.resolution.diagnostics))
         stop_at_errors(self._unsilenced(self.source_diagnostics))
         return self.resolution.program
 

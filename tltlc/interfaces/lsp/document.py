@@ -13,12 +13,12 @@ from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.grammar.allow_index import drop_silenced
 from tltlc.grammar.lexer import Token, Tokens, tokenize
 from tltlc.grammar.module import Module
-from tltlc.interfaces.lsp.follow_up_errors import unparsed_parts
 from tltlc.interfaces.lsp.occurrences import Occurrence, occurrences
 from tltlc.interfaces.lsp.paths import location_of
 from tltlc.io.access_log import Stamp, access_log, stamp
 from tltlc.io.files import unsaved_texts
 from tltlc.pipeline import CompileOptions, Session
+from tltlc.resolve.follow_up_errors import independent_errors
 from tltlc.resolve.resolution import Resolution
 from tltlc.resolve.scope import Scope
 from tltlc.tools.lint.rule import LintFinding
@@ -94,10 +94,7 @@ class Document:
         of the syntax error are left out.
         """
         if self.is_broken:
-            # Apart from syntax errors, report only errors in names that the unparsed parts cannot explain.
-            errors = [diagnostic for diagnostic in self.resolution.diagnostics if diagnostic.severity == "error"]
-            unparsed = unparsed_parts(self.module, self.tokens)
-            return (*self.syntax_errors, *(diagnostic for diagnostic in errors if not unparsed.may_explain(diagnostic)))
+            return independent_errors(self.module, self.syntax_errors, self.resolution.diagnostics)
         resolved = self.resolution
         remaining = drop_silenced((loaded.module for loaded in resolved.modules), resolved.diagnostics)
         remaining_findings = apply_levels(map(LintFinding, remaining), self.project.lint)
