@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -23,11 +24,29 @@ def test_a_copy_is_complete(tltlc, inside: Path, name: str) -> None:  # type: ig
     level = load_level(f"mine/{name}.toml")
     assert level.spec == LevelSpec(Path(f"mine/{name}.tltl"), "unseen" if name == "vault" else name)
     assert all((Path("mine") / file).is_file() for file, _ in level.files)
+    texts = [path.read_text(encoding="utf-8") for path in Path("mine").rglob("*.t*l")]
+    named = re.findall(r"\b(?:assets|overlays)/\w+\.toml", "".join(texts))
+    assert all((Path("mine") / file).is_file() for file in named)
+    assert bool(named) == (name == "vault")
+    assert not any("comes with tltlc" in text for text in texts)
     assert tltlc("test", f"mine/{name}.tltl").status == 0
     checked: Outcome = tltlc("check", "--level", f"mine/{name}.toml:v0")
     assert checked.status == 0
     assert "warning" not in checked.err
     assert "(nothing to report)" in checked.err
+
+
+def test_a_copy_can_be_renamed(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+    tltlc("new", "mine", "--level", "vault")
+    Path("mine").rename("yours")
+    spec = Path("yours/vault.toml").rename("yours/cellar.toml").with_name("vault.tltl")
+    spec.write_text(spec.read_text(encoding="utf-8").replace("level vault", "level cellar"), encoding="utf-8")
+    checked: Outcome = tltlc("check", "--level", "yours/cellar.toml")
+    assert checked.status == 0
+    assert "warning" not in checked.err and "cellar:v1 supplies lever" in checked.err
+    overlay = Path("yours/overlays/guard_alert.toml")
+    overlay.write_text(overlay.read_text(encoding="utf-8").replace("sight_range = 9.5", "sight_range = 5"))
+    assert load_level("yours/cellar.toml", "v1").enemies[0].kind.sight_range == 5.0
 
 
 def test_a_similar_level_is_suggested(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
