@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from functools import lru_cache
+from itertools import product
 
 from tltlc.core.source import SourceFile
-from tltlc.pipeline import CompileOptions
+from tltlc.monitor import Monitor
+from tltlc.pipeline import CompileOptions, compile_text
 from tltlc.tools.lint.file_view import FileView, SpecView
 from tltlc.tools.lint.fix_application import FixedFile, fix
 from tltlc.tools.lint.rule import LintFinding, RuleFinding
@@ -57,3 +60,21 @@ def block(*clauses: str, before: str = SIGNALS) -> str:
 def labelled_texts_in_block(code: str, *clauses: str, before: str = SIGNALS) -> list[str]:
     """Return the text at the first label of each finding with this code, in a spec of these clauses."""
     return labelled_texts(block(*clauses, before=before), code)
+
+
+@lru_cache(maxsize=256)
+def accepted_traces(text: str, bools: str, longest: int = 5) -> frozenset[tuple[str, ...]]:
+    """Return the traces of at most ``longest`` samples that a monitor of the only spec of a text accepts.
+
+    ``bools`` has the names of the bool signals, one letter each. A sample is a string of those that are true.
+    """
+    (fspa,) = compile_text(text)
+    samples = ["".join(names) for names in product(*(("", name) for name in bools))]
+    accepted = set()
+    for length in range(1, longest + 1):
+        for trace in product(samples, repeat=length):
+            monitor = Monitor(fspa)
+            steps = [monitor.step({name: float(name in sample) for name in bools}) for sample in trace]
+            if steps[-1].accepting:
+                accepted.add(trace)
+    return frozenset(accepted)

@@ -6,7 +6,15 @@ import pytest
 from hypothesis import given
 
 from tests.fuzzing import times
-from tests.tools.lint.helpers import APART, block, codes, findings_in, labelled_texts_in_block, spec_and_findings
+from tests.tools.lint.helpers import (
+    APART,
+    accepted_traces,
+    block,
+    codes,
+    findings_in,
+    labelled_texts_in_block,
+    spec_and_findings,
+)
 from tests.tools.lint.strategies import World, specs
 from tltlc.logic.formula import and_
 from tltlc.tools.lint.rules import never_answered
@@ -63,29 +71,40 @@ def test_the_two_sides_of_a_reported_implication_never_hold_together(drawn: tupl
         assert all(any(world.traces.holding_at_some_step(side)) for side in formula.args)
 
 
+AGAIN = "to forbid that it begins again within 1 s, write `avoid (begins a) then within 1 s (begins a)`"
+ALTOGETHER = "to forbid `a` altogether, write `avoid a`"
+
+
 @pytest.mark.parametrize(
     ("clause", "advice"),
     [
-        (
-            "keep a implies always for 1 s not a",
-            "for the steps after it, write `avoid a then within 1 s a`",
-        ),
+        ("keep a implies always for 1 s not a", f"{AGAIN}; {ALTOGETHER}"),
+        ("require always (a implies always for 1 s not a)", f"{AGAIN}; {ALTOGETHER}"),
+        ("require a implies always for 1 s not a", AGAIN),
+        ("keep a implies (always for 1 s not a) and b", f"{AGAIN}; {ALTOGETHER}"),
         (
             "keep begins a implies (always for 10 s not begins a)",
-            "for the steps after it, write `avoid (begins a) then within 10 s (begins a)`",
+            "for the steps after it, write `avoid (begins a) then within 10 s (begins a)`; "
+            "to forbid `begins a` altogether, write `avoid begins a`",
         ),
         (
             "keep a implies always for 1 s (b and not a)",
-            "for the steps after it, write `a implies weak_next always for 1 s (b and not a)`",
+            f"for the steps after it, write `a implies weak_next always for 1 s (b and not a)`; {ALTOGETHER}",
         ),
-        ("keep a implies always not a", "for the steps after it, write `a implies weak_next always not a`"),
         (
-            "keep a implies not eventually within 1 s a",
-            "for the steps after it, write `avoid a then within 1 s a`",
+            "keep a implies always not a",
+            f"for the steps after it, write `a implies weak_next always not a`; {ALTOGETHER}",
+        ),
+        ("keep a implies not eventually within 1 s a", f"{AGAIN}; {ALTOGETHER}"),
+        (
+            "keep (a and b) implies always for 1 s not a",
+            "for the steps after it, write `avoid (a and b) then within 1 s a`; "
+            "to forbid `a and b` altogether, write `avoid a and b`",
         ),
         (
             "keep begins a implies not (F begins a)",
-            "for the steps after it, write `begins a implies weak_next not (F begins a)`",
+            "for the steps after it, write `begins a implies weak_next not (F begins a)`; "
+            "to forbid `begins a` altogether, write `avoid begins a`",
         ),
         ("keep a implies not eventually within 1 s b", None),
         ("keep a implies eventually within 1 s a", None),
@@ -93,7 +112,8 @@ def test_the_two_sides_of_a_reported_implication_never_hold_together(drawn: tupl
             (
                 f"keep {condition} implies {timer} >= 2 s",
                 f"`{timer}` is 0 s at that step; to forbid a second beginning so soon, write "
-                "`avoid (begins a) then within 2 s (begins a)`",
+                "`avoid (begins a) then within 2 s (begins a)`; "
+                f"to forbid `{condition}` altogether, write `avoid {condition}`",
             )
             for condition in ("a", "begins a")
             for timer in ("time_since(a)", "time_holding(not a)")
@@ -106,7 +126,8 @@ def test_the_two_sides_of_a_reported_implication_never_hold_together(drawn: tupl
         ("keep not a implies time_holding(a) < 2 s", None),
         (
             "keep not a implies time_holding(a and b) >= 2 s",
-            "`time_holding(a and b)` is 0 s at that step: compare it at another step",
+            "`time_holding(a and b)` is 0 s at that step: compare it at another step; "
+            "to forbid `not a` altogether, write `keep a`",
         ),
         ("keep a implies next always for 1 s not a", None),
         ("keep a implies always for 1 s not b", None),
@@ -124,3 +145,22 @@ def test_a_rule_that_forbids_its_own_event_is_reported(clause: str, advice: str 
 def test_a_bound_that_begins_later_is_not_reported(clause: str) -> None:
     text = f"clock 60 Hz\nsignal a: bool\nspec s {{\n    limit 60 s\n    judge at limit\n    {clause}\n}}\n"
     assert "TLT0432" not in codes(text)
+
+
+@pytest.mark.parametrize(
+    ("clause", "same"),
+    [
+        ("keep a implies always for 1 s not a", "avoid a"),
+        ("keep a implies (always for 1 s not a)", "avoid a"),
+        ("keep a implies not eventually within 1 s a", "avoid a"),
+        ("keep begins a implies always for 1 s not begins a", "avoid begins a"),
+        ("keep (a and b) implies always for 1 s not a", "avoid a and b"),
+        ("keep a implies time_since(a) >= 2 s", "avoid a"),
+        ("keep not a implies time_holding(a and b) >= 2 s", "keep a"),
+    ],
+)
+def test_the_clause_that_forbids_the_event_altogether_means_the_same(clause: str, same: str) -> None:
+    head = "clock 2 Hz\nsignal a: bool\nsignal b: bool\nspec s {{ judge at limit limit 9 steps {} }}\n"
+    (finding,) = (found for found in findings_in(head.format(clause)) if found.diagnostic.code == "TLT0432")
+    assert str(finding.diagnostic.help).endswith(f"write `{same}`")
+    assert accepted_traces(head.format(clause), "ab") == accepted_traces(head.format(same), "ab")

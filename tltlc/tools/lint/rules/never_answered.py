@@ -10,8 +10,10 @@ from collections.abc import Iterator
 from typing import Final
 
 from tltlc.automaton.finite.contradiction import unsatisfiable
+from tltlc.core.record import record
 from tltlc.diagnostics.diagnostic import Label
-from tltlc.grammar.tree import BinaryExpr, CallExpr, Clause, NameExpr, NumberExpr, Unary
+from tltlc.grammar.tree import BinaryExpr, CallExpr, Clause, Expr, NameExpr, NumberExpr, Unary
+from tltlc.grammar.walk import conjuncts
 from tltlc.logic.formula import Formula, always, and_, not_
 from tltlc.logic.text.phrases import is_state
 from tltlc.resolve.spec import Conjunct
@@ -25,6 +27,30 @@ _REQUIRING: Final = ("implies", "and", "G", "X", "N")
 _TIMERS: Final = ("time_since", "time_holding")
 
 
+@record
+class _Required:
+    """What an implication requires at the step of its condition.
+
+    ``operand`` is required there, or its negation if ``negated``. ``lasting`` is the expression with `always` or
+    `eventually` that requires it, or None if there is none.
+    """
+
+    implication: ScopedExpression
+    operand: ScopedExpression
+    lasting: ScopedExpression | None = None
+    negated: bool = False
+
+    @property
+    def condition(self) -> ScopedExpression:
+        assert isinstance(self.implication.tree, BinaryExpr)
+        return self.implication.with_tree(self.implication.tree.left)
+
+    def formula(self) -> Formula | None:
+        """Return what is required, as a formula; None if it is unknown."""
+        formula = self.operand.formula()
+        return not_(formula) if formula is not None and self.negated else formula
+
+
 def check(view: FileView) -> Iterator[RuleFinding]:
     """Yield a finding for each required implication whose two sides never hold at the same step.
 
@@ -33,9 +59,20 @@ def check(view: FileView) -> Iterator[RuleFinding]:
     """
     for spec in view.specs:
         for clause, value in spec.clauses("keep", "require"):
-            implications = [part for part in _implications(value) if _never_together(part, spec)]
-            if implications and _can_hold(clause, value, spec):
-                yield from map(_finding, implications)
+            found = [required for part in _implications(value) for required in _impossible(part, spec)]
+            if found and _can_hold(clause, value, spec):
+                always = _required_at_every_step(clause, value)
+                yield from (_finding(required, at_every_step=required.implication.tree in always) for required in found)
+
+
+def _required_at_every_step(clause: Clause, value: ScopedExpression) -> list[Expr]:
+    """Return the conjuncts of the formula that a clause requires at every step, or [] if it has another form."""
+    tree = without_brackets(value.tree)
+    if clause.kind == "require":
+        if not isinstance(tree, Unary) or tree.op != "G" or tree.bound is not None:
+            return []
+        tree = tree.operand
+    return [without_brackets(part) for part in conjuncts(tree)]
 
 
 def _implications(value: ScopedExpression) -> Iterator[ScopedExpression]:
@@ -55,48 +92,46 @@ def _implications(value: ScopedExpression) -> Iterator[ScopedExpression]:
             pending += reversed(part.children())
 
 
-def _never_together(implication: ScopedExpression, spec: SpecView) -> bool:
-    condition, result = _condition(implication).formula(), _result(implication)
+def _impossible(implication: ScopedExpression, spec: SpecView) -> list[_Required]:
+    """Return what an implication requires although it never holds together with the condition; at most one."""
+    assert isinstance(implication.tree, BinaryExpr)
+    right = implication.tree.right
+    candidates = [_required(implication, right), *(_required(implication, part) for part in conjuncts(right))]
+    whole = [candidates[0]] if _never_together(candidates[0], spec) else []
+    return whole or [part for part in candidates[1:] if part.lasting is not None and _never_together(part, spec)][:1]
+
+
+def _never_together(required: _Required, spec: SpecView) -> bool:
+    condition, result = required.condition.formula(), required.formula()
     if condition is None or result is None or not is_state(condition) or not is_state(result):
         return False
     names = and_(condition, result).atoms()
     proved = (*relations(spec, names), *timer_relations(spec, names))
 
     def can_be(state: Formula) -> bool:
-        return not unsatisfiable((Conjunct(state, implication.source, implication.tree.span), *proved), spec.spec)
+        return not unsatisfiable(
+            (Conjunct(state, required.operand.source, required.operand.tree.span), *proved), spec.spec
+        )
 
     return not can_be(and_(condition, result)) and can_be(condition) and can_be(result)
 
 
-def _condition(implication: ScopedExpression) -> ScopedExpression:
-    assert isinstance(implication.tree, BinaryExpr)
-    return implication.with_tree(implication.tree.left)
-
-
-def _required(implication: ScopedExpression) -> tuple[ScopedExpression, ScopedExpression | None, bool]:
-    """Return what an implication requires at the step of its condition, perhaps negated.
+def _required(implication: ScopedExpression, result: Expr) -> _Required:
+    """Return what an implication requires by ``result``, a conjunct of its right side, at the step of its condition.
 
     `always` requires its operand at this step, too, unless its bound begins later, and so does `not eventually`
-    with the negated operand. The three values are the operand, the expression with the bound, which is None if there
-    is none, and whether the operand is negated.
+    with the negated operand.
     """
-    assert isinstance(implication.tree, BinaryExpr)
-    tree = lasting = without_brackets(implication.tree.right)
+    tree = lasting = without_brackets(result)
     is_negated = isinstance(tree, Unary) and tree.op == "not"
     if isinstance(tree, Unary) and is_negated:
         lasting = without_brackets(tree.operand)
     if isinstance(lasting, Unary) and lasting.op == ("F" if is_negated else "G"):
         low = lasting.bound.low if lasting.bound is not None else None
         if low is None or low.value == 0:
-            return implication.with_tree(lasting.operand), implication.with_tree(tree), is_negated
-    return implication.with_tree(implication.tree.right), None, False
-
-
-def _result(implication: ScopedExpression) -> Formula | None:
-    """Return the formula that an implication requires at the step of its condition."""
-    operand, _, is_negated = _required(implication)
-    formula = operand.formula()
-    return not_(formula) if formula is not None and is_negated else formula
+            operand = implication.with_tree(lasting.operand)
+            return _Required(implication, operand, implication.with_tree(tree), is_negated)
+    return _Required(implication, implication.with_tree(result))
 
 
 def _can_hold(clause: Clause, value: ScopedExpression, spec: SpecView) -> bool:
@@ -108,19 +143,28 @@ def _can_hold(clause: Clause, value: ScopedExpression, spec: SpecView) -> bool:
     return not spec.decision((whole, *relations(spec, formula.atoms())), spec.spec)
 
 
-def _finding(implication: ScopedExpression) -> RuleFinding:
-    condition, (result, lasting, is_negated) = _condition(implication), _required(implication)
+def _finding(required: _Required, *, at_every_step: bool) -> RuleFinding:
+    implication, condition, result = required.implication, required.condition, required.operand
     label = Label(implication.source, implication.tree.span, f"so this only forbids `{condition.text}`")
-    text = f"not {operand_text(result)}" if is_negated else result.text
-    help_ = _timer_help(result) if lasting is None else None
-    if lasting is not None:
-        help_ = f"for the steps after it, write `{_later(condition, lasting)}`"
+    text = f"not {operand_text(result)}" if required.negated else result.text
+    help_ = _later(required) if required.lasting is not None else _timer_help(result)
+    if help_ is not None and at_every_step:
+        help_ += f"; to forbid `{condition.text}` altogether, write `{_forbidden(condition)}`"
     help_ = help_ or f"if it comes later, write `{operand_text(condition)} implies eventually {operand_text(result)}`"
     return RuleFinding(f"`{text}` never holds at the same step as `{condition.text}`", (label,), help_)
 
 
-def _later(condition: ScopedExpression, lasting: ScopedExpression) -> str:
-    """Return the text of the rule that begins after the step of its condition."""
+def _forbidden(condition: ScopedExpression) -> str:
+    tree = without_brackets(condition.tree)
+    if isinstance(tree, Unary) and tree.op == "not":
+        return f"keep {condition.with_tree(tree.operand).text}"
+    return f"avoid {condition.text}"
+
+
+def _later(required: _Required) -> str:
+    """Return advice on how to write the rule that begins after the step of its condition."""
+    condition, lasting = required.condition, required.lasting
+    assert lasting is not None
     outer = lasting.tree
     assert isinstance(outer, Unary)
     inner = without_brackets(outer.operand)
@@ -128,10 +172,14 @@ def _later(condition: ScopedExpression, lasting: ScopedExpression) -> str:
     assert isinstance(timed, Unary)
     if timed.bound is None or not isinstance(inner, Unary) or "not" not in (outer.op, inner.op):
         # `next` would ask for another step.
-        return f"{operand_text(condition)} implies weak_next {lasting.text}"
-    high, avoided = timed.bound.high, without_brackets(inner.operand)
+        return f"for the steps after it, write `{operand_text(condition)} implies weak_next {operand_text(lasting)}`"
+    high, avoided = timed.bound.high, condition.with_tree(without_brackets(inner.operand))
     time = f"{' '.join(condition.source.slice(high.span).split())}{'' if high.unit else ' steps'}"
-    return f"avoid {_goal_text(condition)} then within {time} {_goal_text(condition.with_tree(avoided))}"
+    if avoided.text == condition.text and not isinstance(avoided.tree, Unary):
+        # An event may last for several steps.
+        begins = f"(begins {operand_text(condition)})"
+        return f"to forbid that it begins again within {time}, write `avoid {begins} then within {time} {begins}`"
+    return f"for the steps after it, write `avoid {_goal_text(condition)} then within {time} {_goal_text(avoided)}`"
 
 
 def _goal_text(part: ScopedExpression) -> str:
