@@ -96,9 +96,19 @@ def _impossible(implication: ScopedExpression, spec: SpecView) -> list[_Required
     """Return what an implication requires although it never holds together with the condition; at most one."""
     assert isinstance(implication.tree, BinaryExpr)
     right = implication.tree.right
+    if _is_past(right):
+        return []  # TLT0440 reports it.
     candidates = [_required(implication, right), *(_required(implication, part) for part in conjuncts(right))]
     whole = [candidates[0]] if _never_together(candidates[0], spec) else []
     return whole or [part for part in candidates[1:] if part.lasting is not None and _never_together(part, spec)][:1]
+
+
+def _is_past(result: Expr) -> bool:
+    """Whether this is `once` or `historically`, perhaps negated."""
+    tree = without_brackets(result)
+    if isinstance(tree, Unary) and tree.op == "not":
+        tree = without_brackets(tree.operand)
+    return isinstance(tree, Unary) and tree.op in ("once", "historically")
 
 
 def _never_together(required: _Required, spec: SpecView) -> bool:
