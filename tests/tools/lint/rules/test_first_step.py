@@ -44,7 +44,7 @@ def test_operands_outside_a_temporal_operator_are_reported(formula: str, expecte
     for diagnostic in diagnostics:
         # The suggestion compiles, and is a different formula.
         original, suggested = tltlc.compile_text(f"{SIGNALS}spec s = {formula}\nspec t = {correction}")
-        assert diagnostic.severity == "note" and not are_equivalent(original, suggested)
+        assert diagnostic.severity == "warning" and not are_equivalent(original, suggested)
 
 
 @pytest.mark.parametrize(

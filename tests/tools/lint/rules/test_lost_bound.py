@@ -62,9 +62,15 @@ def test_a_bound_with_an_effect_is_not_reported(clause: str) -> None:
 
 def test_the_advice_names_the_right_form() -> None:
     assert helps("require eventually within 2 s (a then b)") == [
+        "leave it out; for a time from `a` on, write `reach a then within 2 s b`; "
+        "for a time from the first step, write `(a and time_holding(true) <= 2 s)` for `a`"
+    ]
+    assert helps("require eventually within 2 s (a then b then a)") == [
         "leave it out; for a time from the first step, write `(a and time_holding(true) <= 2 s)` for `a`"
     ]
-    assert helps("require F[0,7] (a then b)") == ["leave it out"]
+    assert helps("require F[0,7] (a then b)") == [
+        "leave it out; for a time from `a` on, write `reach a then within 7 steps b`"
+    ]
     assert helps("reach eventually within 2 s a") == ["write `require eventually within 2 s a`"]
     assert helps("reach a then (eventually within 2 s b)") == ["write `a then within 2 s b`"]
     assert helps("reach a then (F[0,7] (a or b))") == ["write `a then within 7 steps (a or b)`"]

@@ -70,7 +70,10 @@ def _before_sequence(part: ScopedExpression) -> Iterator[RuleFinding]:
     if outer is None or not isinstance(inner, BinaryExpr) or inner.op != "then":
         return
     first, time = operand_text(outer.with_tree(inner.left)), _bound_text(outer).removeprefix("within ")
-    advice = "leave it out"
+    advice, second = "leave it out", without_brackets(inner.right)
+    if inner.bound is None and not (isinstance(second, BinaryExpr) and second.op == "then"):
+        sequence = f"{first} then {_bound_text(outer)} {operand_text(outer.with_tree(second))}"
+        advice += f"; for a time from `{first}` on, write `reach {sequence}`"
     if not time.endswith(("step", "steps")):
         advice += f"; for a time from the first step, write `({first} and time_holding(true) <= {time})` for `{first}`"
     yield _finding(outer, "`then`", advice, f"`then` waits for `{first}`, however long that takes")
