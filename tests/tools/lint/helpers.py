@@ -71,10 +71,9 @@ def accepted_traces(text: str, bools: str, longest: int = 5) -> frozenset[tuple[
     (fspa,) = compile_text(text)
     samples = ["".join(names) for names in product(*(("", name) for name in bools))]
     accepted = set()
-    for length in range(1, longest + 1):
-        for trace in product(samples, repeat=length):
-            monitor = Monitor(fspa)
-            steps = [monitor.step({name: float(name in sample) for name in bools}) for sample in trace]
-            if steps[-1].accepting:
-                accepted.add(trace)
+    for trace in product(samples, repeat=longest):
+        monitor = Monitor(fspa)
+        for length, sample in enumerate(trace, start=1):
+            if monitor.step({name: float(name in sample) for name in bools}).accepting:
+                accepted.add(trace[:length])
     return frozenset(accepted)

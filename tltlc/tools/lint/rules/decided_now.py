@@ -114,4 +114,4 @@ def _then(operator: ScopedExpression) -> str:
     return f"then within {' '.join(operator.source.slice(high.span).split())}{'' if high.unit else ' steps'}"
 
 
-RULE = LintRule("TLT0440", "warning", check, supersedes=("TLT0430",))
+RULE = LintRule("TLT0440", "warning", check, supersedes=("TLT0430", "TLT0443"))

@@ -100,4 +100,4 @@ def _share_atoms(part: Conjunct, others: Sequence[Conjunct], proved: Sequence[Co
     return any(own.intersection(other.formula.atoms()) for other in others)
 
 
-RULE = LintRule("TLT0413", "warning", check)
+RULE = LintRule("TLT0413", "warning", check, supersedes=("TLT0443",))

@@ -111,4 +111,4 @@ def _finding(part: ScopedExpression, cause: str, advice: str, message: str = "")
     return RuleFinding("this bound has no effect", (label,), advice)
 
 
-RULE = LintRule("TLT0437", "warning", check)
+RULE = LintRule("TLT0437", "warning", check, supersedes=("TLT0443",))
