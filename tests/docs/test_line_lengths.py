@@ -14,7 +14,6 @@ PAGES = sorted([*DOCS.rglob("*.md"), ROOT / "README.md", ROOT / "CONTRIBUTING.md
 NOT_YET_WRAPPED = {
     "CHANGELOG.md",
     "README.md",
-    "docs/artefact.md",
     "docs/guides/linting.md",
     "docs/guides/mining.md",
     "docs/guides/recorded-play.md",

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Iterator
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -95,6 +96,7 @@ def test_no_other_code_deviates() -> None:
 
 
 ARTEFACT = (DOCS / "artefact.md").read_text(encoding="utf-8")
+_FENCED = re.compile(r"^```.*?^```$", re.DOTALL | re.MULTILINE)
 SPEC = """import stealth
 clock 20 Hz
 entity s1, s2
@@ -121,9 +123,27 @@ def test_every_field_of_the_artefact_is_documented() -> None:
     (fspa,) = tltlc.compile_text(SPEC)
     (text,) = emit("json", fspa).values()
     fields = {*keys(json.loads(text)), *schema["properties"], *schema["properties"]["spec"]["properties"]}
-    documented = set(re.findall(r"[\w+*/^<>=-]+", " ".join(re.findall(r"`([^`]+)`", ARTEFACT))))
+    documented = set(re.findall(r"[\w+*/^<>=-]+", " ".join(re.findall(r"`([^`]+)`", _FENCED.sub("", ARTEFACT)))))
     documented |= {part for name in documented for part in name.split(".")}
     assert fields | operators <= documented
+
+
+def test_the_excerpt_of_an_artefact_is_that_of_the_tutorial() -> None:
+    source = next(block.text for block in blocks(DOCS / "tutorial.md") if block.file == "boss.tltl")
+    (fspa,) = tltlc.compile_text(source)
+    (text,) = emit("json", fspa).values()
+    artefact = json.loads(text)
+    (excerpt,) = (block for block in blocks(DOCS / "artefact.md") if block.kind == "json")
+    shown = json.loads(excerpt.text.replace("{…}", "{}"))
+    assert shown["states"] == [{**state, "label": {}} for state in artefact["states"]]
+    assert shown["initial"] == artefact["initial"]
+    assert all(edge in artefact["edges"] for edge in shown["edges"])
+
+
+def test_the_program_with_a_monitor_prints_the_shown_output(capsys: pytest.CaptureFixture[str]) -> None:
+    program, printed = next(pair for pair in pairwise(blocks(DOCS / "artefact.md")) if pair[0].kind == "python")
+    exec(program.text, {})
+    assert capsys.readouterr().out == printed.text
 
 
 def test_the_fields_of_a_step_are_documented() -> None:
