@@ -16,7 +16,6 @@ NOT_YET_WRAPPED = {
     "README.md",
     "docs/guides/linting.md",
     "docs/guides/mining.md",
-    "docs/guides/recorded-play.md",
     "docs/guides/unity.md",
     "docs/regression.md",
 }
