@@ -15,7 +15,6 @@ NOT_YET_WRAPPED = {
     "CHANGELOG.md",
     "README.md",
     "docs/guides/linting.md",
-    "docs/guides/mining.md",
     "docs/guides/unity.md",
     "docs/regression.md",
 }
