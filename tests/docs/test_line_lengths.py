@@ -12,7 +12,6 @@ from tests.docs.blocks import DOCS, ROOT
 COLUMNS = 100
 PAGES = sorted([*DOCS.rglob("*.md"), ROOT / "README.md", ROOT / "CONTRIBUTING.md", ROOT / "CHANGELOG.md"])
 NOT_YET_WRAPPED = {
-    "README.md",
     "docs/guides/unity.md",
     "docs/regression.md",
 }

@@ -25,7 +25,6 @@ class StepTable:
     """
 
     def __init__(self, fspa: Fspa, width: int) -> None:
-        self._fspa = fspa
         columns = [("step", 5), ("verdict", 9), ("progress", 8), ("reward", _NUMBER)]
         self._titles = [(title, max(least, len(title))) for title, least in columns]
         used = sum(wide + 2 for _, wide in self._titles)
@@ -39,11 +38,11 @@ class StepTable:
                 used += wide + 2
         self.left_out = len(fspa.atoms) - len(self._atoms)
         self._flags = [index in known for index in self._atoms]
-        self._state = 0
+        self._to_do = label_text(fspa, 0)
 
     def head(self) -> Iterator[str]:
         """Yield the lines before the first step: what the spec asks for, and the titles of the columns."""
-        yield f"to do: {label_text(self._fspa, 0)}"
+        yield f"to do: {self._to_do}"
         yield self._line([title for title, _ in self._titles])
 
     def rows(self, row: RunStep) -> Iterator[str]:
@@ -56,10 +55,10 @@ class StepTable:
         yield self._line(
             [str(row.number), step.verdict, short_number(step.progress), short_number(step.reward), *atoms]
         )
-        if step.state != self._state:
-            self._state = step.state
+        if step.label_english != self._to_do:
+            self._to_do = step.label_english
             if step.verdict in ("pending", "holding"):
-                yield f"to do: {step.label_english}"
+                yield f"to do: {self._to_do}"
 
     def _line(self, cells: list[str]) -> str:
         aligned = [
