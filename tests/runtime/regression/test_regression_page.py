@@ -62,7 +62,7 @@ def test_the_page_has_the_defaults() -> None:
     }
     assert rows("key")["episodes"].endswith(f"| {MOST_EPISODES}")
     assert f"in [{LEAST_EPISODES}, 10000]" in rows("key")["episodes"]
-    assert f"from {LEAST_EPISODES} episodes on, and {MOST_EPISODES} at the most" in " ".join(PAGE.split())
+    assert f"at least {LEAST_EPISODES} episodes, and at most {MOST_EPISODES}" in " ".join(PAGE.split())
 
 
 def test_the_suites_on_the_page_are_valid(tmp_path: Path) -> None:
@@ -127,14 +127,16 @@ def test_the_page_has_the_numbers_of_episodes() -> None:
         return next(count for count in range(25, 99) if rate_interval(count, 0, 0.05 / cases)[0] >= 0.85)
 
     text = " ".join(PAGE.split())
-    assert f"after {least(1)} episodes, with nine after {least(9)}, with thirty after {least(30)}" in text
+    in_one, in_nine, in_thirty = map(least, (1, 9, 30))
+    assert f"after {in_one} episodes in a suite of one case, after {in_nine} in one of nine" in text
+    assert f"and after {in_thirty} in one of thirty" in text
     most = max(failed for failed in range(99) if rate_interval(300 - failed, failed, 0.05 / 9)[0] >= 0.85)
     assert f"in a suite of nine cases, {most} may fail" in text
 
 
 def test_the_page_has_the_shares_of_the_bets() -> None:
     *first, last = (f"{share:g}" for share in confidence._SHARES)
-    assert f"for c = {', '.join(first)} and {last}," in " ".join(PAGE.split())
+    assert f"for c = {', '.join(first)} and {last}. " in " ".join(PAGE.split())
     assert f"1/{confidence._POINTS} · Σ" in PAGE
 
 
