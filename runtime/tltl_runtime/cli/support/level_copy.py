@@ -54,7 +54,7 @@ _README: Final = """\
 several levels may share, and `overlays/` the small changes that make the variants of the level. You can edit all of
 these files; `docs/levels.md` of tltlc describes every key.
 
-    tltlc check --level {level}                     is it right, and can anybody do it?
+    tltlc check --level {level}                     does it have errors, and can a player meet its spec?
     tltlc check --level {level}:v0 --plan plan.png  what does it look like?
     tltlc play {level}                              play it yourself
     tltlc demonstrate {level}                       watch the scripted expert
@@ -62,5 +62,5 @@ these files; `docs/levels.md` of tltlc describes every key.
     tltlc evaluate bot                              see how often it succeeds, and where it fails
     tltlc test {spec}                               does the spec mean what you intend?
 
-The name of the file is the name of the level, as in `level NAME` in the spec: if you rename one, rename both.
+The name of the file is the name of the level. The spec has it, too, in `level NAME`: if you rename one, rename both.
 """

@@ -128,15 +128,16 @@ _README: Final = """\
 
 `first_level.tltl` says what a player has to do in the first level; `first_level.csv` is a recorded trace.
 
-    tltlc check first_level.tltl                      is it right?
-    tltlc explain first_level.tltl                    what does it say?
-    tltlc lint first_level.tltl                       does it say what we meant?
-    tltlc test first_level.tltl                       do its examples come out?
+    tltlc check first_level.tltl                      does it have errors?
+    tltlc explain first_level.tltl                    what does it ask for?
+    tltlc lint first_level.tltl                       does it have likely mistakes?
+    tltlc test first_level.tltl                       do its tests pass?
     tltlc compile first_level.tltl -o build           the automaton and its monitor
     tltlc render first_level.tltl -o first_level.svg  a picture of it
-    tltlc monitor first_level.tltl first_level.csv    does the trace fulfil it?
+    tltlc monitor first_level.tltl first_level.csv    does the trace meet it?
 
-While you write: `tltlc watch` says all of that whenever you save, and `tltlc serve` opens a page to try specs on.
+While you write, `tltlc watch` checks, lints and tests the spec whenever you save it. `tltlc serve --open` opens a page
+for trying out specs.
 """
 
 _FILES: Final = {
