@@ -43,14 +43,13 @@ Examples:
 def command(suite: Path | None, path: Path | None, fresh: bool, workers: Any) -> int:
     """Record how the policies of a suite play the levels now. `tltlc regress` compares with this baseline.
 
-    Run it while the levels play as they are meant to, and again after each change that is meant. Each level is played
-    in the variant that its cases are compared with; by default the first one. Results in an existing file are kept if
-    level, policy, spec, seed, versions and code have not changed. Without SUITE, the command plays the levels that come
-    with tltlc and writes `shipped.baseline.json`.
+    Run it while the levels play as you want them to, and again after each intended change. Each level is played only in
+    the variant that its cases are compared with, by default the first one; `tltlc regress` judges the others. Results
+    in an existing file are kept if level, policy, spec, seed, versions and code have not changed. Without SUITE, the
+    command plays the levels that come with tltlc and writes `shipped.baseline.json`.
 
-    The exit status is 0 if the baseline is written. It is 1 if it is written, but none of the cases can pass with it;
-    each other status, and 1 with an error, means that it is not written. Other variants are not played: a variant that
-    fails changes no status here, but that of `tltlc regress`.
+    The exit status is 0 if the baseline is written, and 1 if it is written but none of the cases can pass with it.
+    After an error, with status 1 or any other, the baseline is not written.
     """
     with cli.Report() as report, name_missing_extra("`tltlc baseline`"), ignore_closed_pipe():
         check_suite_exists(suite)

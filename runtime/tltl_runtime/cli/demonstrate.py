@@ -63,8 +63,8 @@ def command(
     name (`tltlc list levels`) or its file. A game of your own has an expert if its environment has a method
     `tltl_expert()`. For each episode, the command writes the recording LEVEL-VARIANT-SEED.episode.npz and a plan of the
     path (.png), and says why an episode failed. Existing files are kept: a different episode with the same name becomes
-    LEVEL-VARIANT-SEED-2, and so on. The exit status is 1 if an episode fails. An episode that is lost with its game is
-    neither a success nor a failure.
+    LEVEL-VARIANT-SEED-2, and so on. If a game in another process ends or hangs, its episode is lost, and counts neither
+    as a success nor as a failure. The exit status is 1 if an episode fails.
     """
     from tltl_runtime.cli.support.episode_text import episode_line
     from tltl_runtime.game.capability_error import no_expert_error

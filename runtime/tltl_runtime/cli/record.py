@@ -90,10 +90,10 @@ def command(
 
     LEVEL is a scene of your game, `FILE.game.toml:SCENE`, or a level of the stealth game that comes with tltlc: its
     name (`tltlc list levels`) or its file. Each demonstration is a recording LEVEL-VARIANT-SEED.episode.npz. An episode
-    that fails is not kept; the command says why. If a game in another process is lost, the command goes on with the
-    next episode. Demonstrations that are already in the folder count, so the same command continues where it stopped.
-    Other recordings in the folder, and files that cannot be read, stay as they are. You may omit LEVEL if the spec
-    names it.
+    that fails is not kept, and the command says why it failed. If a game in another process ends or hangs, the command
+    continues with the next episode. Demonstrations that are already in the folder count, so the same command continues
+    where it stopped. Other recordings in the folder, and files that cannot be read, stay as they are. You may omit
+    LEVEL if the spec names it.
 
     With --tape, each tape that meets the spec becomes a demonstration.
 

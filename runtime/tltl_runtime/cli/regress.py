@@ -72,7 +72,7 @@ Examples:
 @click.option(
     "--spec",
     metavar="SPEC",
-    help="Judge recorded traces by this spec, without a suite, a game and a policy; needs --now and --baseline.",
+    help="Judge recorded traces by this spec, without a suite, a game or a policy; needs --now and --baseline.",
 )
 @click.option(
     "--now", metavar="PATH", type=click.Path(), callback=path_option, help="The traces to judge: a file or a folder."
@@ -119,11 +119,12 @@ def command(
 ) -> int:
     """Report which levels still play as designed: trained policies play them, or recorded play is judged.
 
-    SUITE is a TOML file. Without it, the levels that come with tltlc are played in all of their variants. A case is not
-    played again if nothing has changed since the last time. Actions are sampled, as in training and in the baseline;
-    `tltlc evaluate` also plays the most probable ones. Cases of a suite may also be recorded traces, of any game;
-    --spec judges such traces without a suite. The exit status is 0 if all cases pass, and 1 if a case fails or needs a
-    review; --retrain does not change it.
+    SUITE is a TOML file that lists cases: levels and the policies that play them, or recorded traces of any game.
+    Without SUITE, the levels that come with tltlc are played, in all of their variants. --spec judges recorded traces
+    without a suite. A case is not played again if nothing has changed since the last run. Actions are sampled, as in
+    training and in the baseline; `tltlc evaluate` also plays the most probable ones.
+
+    The exit status is 0 if all cases pass, and 1 if a case fails or needs a review; --retrain does not change it.
     """
     printed = {
         name: f"`--{name} {path}`" for name, path in files.items() if path is not None and is_standard_output(path)

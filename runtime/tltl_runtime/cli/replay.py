@@ -113,8 +113,9 @@ def command(
 ) -> int:
     """Show recorded episodes: a summary, a plan of the path, a film, the signals.
 
-    --check tells whether the spec gives the recorded atoms, states and rewards for the recorded signals, and whether
-    the level gives the same episode again for the same seed and actions.
+    --check judges the recorded signals again, and reports whether the spec gives the recorded atoms, states and
+    rewards. It also plays the recorded actions again with the same seed, and reports whether the level gives the same
+    episode.
     """
     _check_usage(context, files, path, size)
     from tltl_runtime.game.recording_summary import summary, summary_text

@@ -106,16 +106,15 @@ Watching, from another terminal:
     metavar="N",
     type=cli.WholeRange(),
     callback=_setting("stop", "steps"),
-    help="Stop after this many steps, counted over all environments (new trainings: 4,000,000).",
+    help="Stop after this many steps, counted over all environments (default of new trainings: 4,000,000).",
 )
 @click.option(
     "--minutes",
     metavar="M",
     type=float,
     callback=_setting("stop", "minutes"),
-    help="Stop when the command has run for this many minutes, the starts of the games and the search included, but "
-    "after the first iteration at the earliest (0: no limit, as in new trainings). Earlier runs of a resumed training "
-    "count.",
+    help="Stop after this many minutes, but not before the end of the first iteration (default of new trainings: 0, no "
+    "limit). The starts of the games, the search, and earlier runs of a resumed training count.",
 )
 @click.option(
     "--workers",
@@ -139,7 +138,7 @@ def command(
 
     The agent plays a scene of your game (--game), or a level (--level) of the stealth game that comes with tltlc. SPEC
     judges and rewards it; the default is the spec that the scene or the level names. The training ends when 100
-    episodes in a row met the spec and then 300 new episodes of the unchanged policy met it, or at a limit. The folder
+    episodes in a row have met the spec, and then 300 new episodes with the policy unchanged; or at a limit. The folder
     then contains the policy (policy.safetensors), the record of the training (record.json, curve.png) and the
     measurements (metrics.jsonl, and event files for TensorBoard). After Ctrl-C, --resume continues.
 

@@ -28,7 +28,7 @@ BUILT_IN: Final = {
     "lint": "Report probable mistakes in specs that compile.",
     "fmt": "Format source files in one style.",
     "render": "Draw the automaton of a spec.",
-    "monitor": "Judge a recorded trace by a spec.",
+    "monitor": "Judge recorded traces by a spec.",
     "test": "Run the test blocks of source files.",
     "watch": "Check, lint and test source files whenever one changes.",
     "witness": "Print traces that show what a spec means.",
@@ -244,8 +244,8 @@ Start here:
 With a game:
   tltlc check --game hall.game.toml  does the game have what the spec needs?
   tltlc train --game hall.game.toml  an agent learns to meet the spec
-  tltlc baseline suite.toml          keep how agents play now
-  tltlc regress suite.toml           do they still play so?
+  tltlc baseline suite.toml          record how agents play now
+  tltlc regress suite.toml           do they still play like that?
 """
 
 

@@ -84,9 +84,9 @@ def command(
 
     In a folder, all .tltl files are checked, also those in subfolders. The default is the current folder.
     With --game, the command also plays each scene of a game twice, and reports what the game offers, how fast it is,
-    and whether equal seeds and actions give equal plays. With --level, it also reports what a spec needs and a level of
-    the stealth game lacks, and what nobody can reach there. Without SPEC, both use the specs of the scenes or levels.
-    The exit status is 1 if there is an error, and 0 otherwise.
+    and whether equal seeds and actions give equal plays. With --level, it also reports what a spec needs but a level of
+    the stealth game does not have, and what no player can reach there. Without SPEC, both use the specs of the scenes
+    or levels. The exit status is 1 if there is an error, and 0 otherwise.
     """
     from tltlc.diagnostics.diagnostic import TltlError
     from tltlc.interfaces.cli.folders import every_source

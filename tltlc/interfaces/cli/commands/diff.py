@@ -42,9 +42,9 @@ Examples:
 def command(a: str, b: str, by_name: bool, settings: CompileSettings, format: str) -> int:  # noqa: A002
     """Say how B differs from A (files, FILE:NAME, artefacts, REV:FILE of a Git revision, or - for standard input).
 
-    The output says whether B is equivalent, stricter or looser, with a shortest trace for each direction, in words and
-    as a test block. Then it lists other differences: limit, judge, level, meanings of atoms, signals, params, exclusive
-    atoms. The exit status is 0 if nothing differs, and 1 otherwise.
+    The output says whether B is equivalent, stricter or looser. Shortest traces that only one of them accepts show
+    why, in words and as test blocks. Then the output lists other differences: limit, judge, level, meanings of atoms,
+    signals, params, exclusive atoms. The exit status is 0 if nothing differs, and 1 otherwise.
     """
     from tltlc.interfaces.cli.report import Report
     from tltlc.tools.diff.pairs import diff_files
