@@ -7,6 +7,7 @@ from typing import Final
 
 from tltlc.core.source import Span
 from tltlc.diagnostics.diagnostic import Label
+from tltlc.grammar import walk
 from tltlc.grammar.tree import BinaryExpr
 from tltlc.logic.formula import TRUE, Formula, and_, atom, eventually, not_, or_, rebuild
 from tltlc.resolve.spec import Conjunct
@@ -26,6 +27,26 @@ def check(view: FileView) -> Iterator[RuleFinding]:
         if not spec.is_settled:
             for goal in goals(spec):
                 yield from _findings(goal, spec)
+            yield from _absent_last(spec)
+
+
+def _absent_last(spec: SpecView) -> Iterator[RuleFinding]:
+    """Yield a finding for `reach a then not b`: the last goal only asks that something new does not hold.
+
+    One step without it is enough. `reach a then not a` asks for the end of a, and is left out.
+    """
+    for _, value in spec.clauses("reach"):
+        *before, last = [value.with_tree(step) for step in walk.operands(value.tree, "then")]
+        formula = last.formula() if before else None
+        earlier = [goal.formula() for goal in before]
+        if formula is None or formula.op != "not" or formula.args[0].op != "atom" or None in earlier:
+            continue
+        if set(formula.atoms()) & {name for goal in earlier if goal is not None for name in goal.atoms()}:
+            continue
+        absent = last.text.removeprefix("not ").removeprefix("!").strip()
+        label = Label(last.source, without_brackets(last.tree).span, f"one step without `{absent}` is enough")
+        help_ = f"write a clause `avoid {absent}` if it must never hold, or leave the goal out"
+        yield RuleFinding(_TITLE, (label,), help_)
 
 
 def _findings(goal: ScopedExpression, spec: SpecView) -> Iterator[RuleFinding]:
