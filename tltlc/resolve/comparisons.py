@@ -8,7 +8,7 @@ from math import inf
 from tltlc.core.names import ComparisonName
 from tltlc.core.source import Span
 from tltlc.diagnostics.diagnostic import Edit, Fix, replacement_fix
-from tltlc.grammar.tree import BinaryExpr, Expr, NameExpr, NumberExpr, ParamDecl, SignalDecl
+from tltlc.grammar.tree import BinaryExpr, CallExpr, Expr, NameExpr, NumberExpr, ParamDecl, SignalDecl
 from tltlc.grammar.walk import expressions, parts
 from tltlc.logic.formula import Formula, atom, not_
 from tltlc.resolve import units
@@ -97,14 +97,18 @@ def _check_truth(left: Quantity, op: str, right: Quantity, negated: bool, expr: 
         message = f"`{x.text}` lies in {range_text(x.low, x.high, x.dimension)}"
         constant = "true" if holds else "false"
         advice = f"compare with a value inside that range, or write `{constant}`"
-        fix = replacement_fix(source, expr.span, constant, "safe")
+        fix: Fix | None = replacement_fix(source, expr.span, constant, "safe")
         if x.is_constant:
             message, advice = "both sides are constant", f"compare a signal, or write `{constant}`"
+        elif _is_bool(expr.left, env) or _is_bool(expr.right, env):
+            message = f"`{x.text}` is true or false"
+            advice = f"write `{x.text}` or `not {x.text}`, or count how often it has begun, as in `times({x.text}) > 3`"
+            fix = _count_fix(expr, env)
         elif _is_percentage(x, c, op, expr, env):
             text, end = f"{' '.join(source.slice(expr.span).split())} %", expr.span.end
             advice = f"write `{text}`: a ratio is a number in [0, 1]"
             fix = Fix(f"Write `{text}`", (Edit(Span(end, end), " %"),))
-        fixes: tuple[Fix, ...] = (fix,)
+        fixes = () if fix is None else (fix,)
         if source.text[expr.left.span.end :].lstrip().startswith("<-"):
             # This was most likely meant as an arrow that points to the left.
             fixes, advice = (), f"{advice}; write an implication as `b implies a`"
@@ -112,7 +116,8 @@ def _check_truth(left: Quantity, op: str, right: Quantity, negated: bool, expr: 
         raise problem("TLT0310", title, source, expr.span, message, advice=advice, fixes=fixes)
     missing_ends = [inf in (left.high, -right.low), inf in (-left.low, right.high)]
     if any(missing_ends):
-        raise _missing_range_error(x, missing_ends, expr, env)
+        without_range = [side.text for side in (left, right) if inf in (side.high, -side.low)]
+        raise _missing_range_error(x, missing_ends, without_range, expr, env)
 
 
 def _is_percentage(x: Quantity, c: float, op: str, expr: BinaryExpr, env: Env) -> bool:
@@ -120,6 +125,21 @@ def _is_percentage(x: Quantity, c: float, op: str, expr: BinaryExpr, env: Env) -
     is_plain = isinstance(expr.right, NumberExpr) and expr.right.unit is None
     is_percentage = is_plain and (2 <= c < 100 or (c == 100 and op == "<"))
     return is_percentage and (x.low, x.high) == (0, 1) and _is_ratio(expr.left, env)
+
+
+def _is_bool(expr: Expr, env: Env) -> bool:
+    """Whether an expression is a signal that is true or false."""
+    binding = env.scope.names.get(expr.name) if isinstance(expr, (NameExpr, CallExpr)) else None
+    declaration = binding.declaration if binding else None
+    return isinstance(declaration, SignalDecl) and declaration.type == "bool"
+
+
+def _count_fix(expr: BinaryExpr, env: Env) -> Fix | None:
+    """Return the fix that counts how often a bool has begun, as in `died > 3`; None for numbers below 2."""
+    if not (isinstance(expr.right, NumberExpr) and expr.right.unit is None and expr.right.value >= 2):
+        return None
+    text = " ".join(env.scope.source.slice(expr.left.span).split())
+    return replacement_fix(env.scope.source, expr.left.span, f"times({text})")
 
 
 def _is_ratio(expr: Expr, env: Env) -> bool:
@@ -132,13 +152,16 @@ def _is_ratio(expr: Expr, env: Env) -> bool:
     return declaration.type == "ratio" or any(isinstance(part, NumberExpr) and part.unit == "%" for part in range_parts)
 
 
-def _missing_range_error(x: Quantity, missing_ends: list[bool], expr: BinaryExpr, env: Env) -> ResolutionError:
+def _missing_range_error(
+    x: Quantity, missing_ends: list[bool], without_range: list[str], expr: BinaryExpr, env: Env
+) -> ResolutionError:
     unit = f" {units.si_unit(x.dimension)}" if x.dimension and units.si_unit(x.dimension) else ""
     ends = " and ".join(word for word, missing in zip(("upper", "lower"), missing_ends, strict=True) if missing)
+    named = " and ".join(f"`{text}`" for text in without_range)
     return problem(
         "TLT0311",
         f"`{x.text}` has no {ends} bound to scale this comparison by",
         env.scope.source,
         expr.span,
-        advice=f"declare a range with two ends, e.g. `in [0{unit}, 100{unit}]`, or use a predicate",
+        advice=f"declare a range with two ends for {named}, e.g. `in [0{unit}, 100{unit}]`, or use a predicate",
     )

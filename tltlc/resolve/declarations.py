@@ -6,7 +6,8 @@ from collections.abc import Iterable
 from math import inf
 
 from tltlc.core.record import replace
-from tltlc.diagnostics.diagnostic import Label, replacement_fix
+from tltlc.core.source import Span
+from tltlc.diagnostics.diagnostic import Edit, Fix, Label, replacement_fix
 from tltlc.grammar.tree import ClockDecl, ParamDecl, SignalDecl
 from tltlc.resolve import units
 from tltlc.resolve.clock import LONGEST_S, SHORTEST_S, period_s
@@ -16,6 +17,7 @@ from tltlc.resolve.enums import value_names
 from tltlc.resolve.options import ResolveOptions
 from tltlc.resolve.predicates import unknown_type_error
 from tltlc.resolve.problem import ResolutionError, problem
+from tltlc.resolve.quantities import quantity
 from tltlc.resolve.scope import Scope
 from tltlc.resolve.spec import Param, ValueType
 from tltlc.resolve.values import Env, range_text
@@ -57,6 +59,7 @@ def _range(declaration: SignalDecl | ParamDecl, type_: ValueType, env: Env) -> t
         if type_ == "bool":
             title = f"`{declaration.name}` is a bool, so it cannot have a range"
             raise problem("TLT0303", title, env.scope.source, declaration.interval.span, advice="leave out the range")
+        _check_units(declaration, type_, env)
         low, high = interval(declaration.interval, units.TYPES[type_], env)
         if type_ == "int" and not all(end is None or end.is_integer() for end in (low, high)):
             title, span = "the range of an int has whole ends", declaration.interval.span
@@ -65,6 +68,42 @@ def _range(declaration: SignalDecl | ParamDecl, type_: ValueType, env: Env) -> t
     if isinstance(declaration, SignalDecl) and declaration.values:
         return 0.0, len(declaration.values) - 1.0
     return (0.0, 1.0) if type_ in ("ratio", "bool") else (None, None)
+
+
+def _check_units(declaration: SignalDecl | ParamDecl, type_: ValueType, env: Env) -> None:
+    """Raise ResolutionError (TLT0305) if the range of a plain number has ends with a unit."""
+    assert declaration.interval is not None
+    if units.TYPES[type_] != units.PLAIN:
+        return
+    for end in (declaration.interval.low, declaration.interval.high):
+        try:
+            dimension = quantity(end, replace(env, constant=True, local={})).dimension
+        except ResolutionError:
+            continue  # an infinite end, or an error that `interval` reports
+        named = next((name for name, known in units.TYPES.items() if known == dimension), None)
+        if dimension in (None, units.PLAIN) or named is None:
+            continue
+        kind = f"has the type `{declaration.type}`" if declaration.type else "has no type"
+        title = f"`{declaration.name}` {kind}, but the ends of its range are {named}s"
+        raise problem(
+            "TLT0305",
+            title,
+            env.scope.source,
+            end.span,
+            advice=f"declare it with the type `{named}`: `{declaration.name}: {named}`",
+            fixes=_type_fixes(declaration, named, env),
+        )
+
+
+def _type_fixes(declaration: SignalDecl | ParamDecl, type_: str, env: Env) -> tuple[Fix, ...]:
+    """Return the fix that writes a type after the name of a declaration, in place of the one that stands there."""
+    source, start = env.scope.source, declaration.name_span.end
+    if declaration.type is None:
+        at = source.text.find(")", start) + 1 if source.text[start:].lstrip().startswith("(") else start
+        return (Fix(f"Write `: {type_}`", (Edit(Span(at, at), f": {type_}"),)),)
+    assert declaration.interval is not None
+    at = source.text.rfind(declaration.type, start, declaration.interval.span.start)
+    return () if at < 0 else (replacement_fix(source, Span(at, at + len(declaration.type)), type_),)
 
 
 def _signal(declaration: SignalDecl, env: Env) -> None:
