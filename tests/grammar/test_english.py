@@ -197,6 +197,9 @@ def time_meaning(clause: str, prefix: str, word: str) -> Whole | None:
     if clause == "avoid" and prefix == "c and " and word in ("within", "in"):
         # The time may be that between the two.
         return None
+    if clause == "keep" and word == "for" and prefix == "c implies ":
+        # The time counts from the step of c on.
+        return clause_meaning(clause, with_prefix(prefix, at_every_step(a, 0, STEPS - 1)))
     has_form = clause in ("reach", "avoid") or (clause == "keep" and word in ("for", "after"))
     if has_form:
         return (

@@ -53,7 +53,6 @@ def fixed_text(text: str) -> str:
         ("reach a and b in 5 seconds", "require eventually within 5 s (a and b)"),
         ("reach a then b within 20 steps", "reach a then within 20 steps b"),
         ("reach a or b then c within 20 steps", "reach (a or b) then within 20 steps c"),
-        ("reach a then b then c within 20 steps", "reach a then b then within 20 steps c"),
         ("reach once a within 20 steps", "reach once within 20 steps a"),
         ("keep b implies once a within 8 s", "keep b implies once within 8 s a"),
         ("keep b implies historically a for 8 s", "keep b implies historically for 8 s a"),
@@ -72,6 +71,8 @@ def fixed_text(text: str) -> str:
         ("reach a after 3 steps", "require next after 3 steps eventually a"),
         ("keep a for 20 steps", "require always for 20 steps a"),
         ("keep a implies b within 20 steps", "keep a implies eventually within 20 steps b"),
+        ("keep a implies b for 20 steps", "keep a implies always for 20 steps b"),
+        ("require always (a -> b for 20 steps)", "require always (a -> always for 20 steps b)"),
         ("require eventually within 20 a", "require eventually within 20 steps a"),
         # A clause in a formula, a formula for a clause.
         ("keep a implies reach b", "keep a implies eventually b"),

@@ -195,4 +195,4 @@ def test_a_sentence_that_has_no_one_form_says_what_to_write(clause: str, help_: 
 
 
 def test_no_before_an_absence_has_its_own_fix() -> None:
-    assert next(suggestions("keep no a for 2 s after b")).strip() == "keep not a for 2 s after b"
+    assert next(suggestions("keep no a for 2 s after b")).strip() == "keep b implies always for 2 s not a"

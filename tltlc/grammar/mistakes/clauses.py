@@ -357,7 +357,7 @@ def _limit_error(failure: ParseFailure, title: str) -> Diagnostic | None:
     phrase = tuple("N" if token in numbers else token.text.lower() for token in tokens if token not in units)
     text, code = f"limit {numbers[0].text} {unit}", "TLT0101" if failure.stop.index else "TLT0107"
     is_clear = bool(units) or not (any("time" in word for word in phrase) or declared_names(failure.source).has_clock)
-    if is_clear and phrase in _LIMITS and (failure.tokens[0].type == "LIMIT" or _is_own_line(failure)):
+    if is_clear and phrase in _LIMITS and (failure.tokens[0].type == "LIMIT" or is_own_line(failure)):
         diagnostic = suggest_rewrite(failure, 0, len(failure.tokens) - 1, text, title, code=code)
         if diagnostic:
             return diagnostic
@@ -371,7 +371,7 @@ def _limit_error(failure: ParseFailure, title: str) -> Diagnostic | None:
     return failure.error(code, title, _IN_TIME.format(limit=text, time=time))
 
 
-def _is_own_line(failure: ParseFailure) -> bool:
+def is_own_line(failure: ParseFailure) -> bool:
     """Whether nothing but braces and comments stands beside the broken text on its lines."""
     text, tokens = failure.source.text, failure.tokens
     before = text[: tokens[0].start].rpartition("\n")[2].rpartition("{")[2]

@@ -52,6 +52,8 @@ def comparison_in_words(failure: ParseFailure) -> Diagnostic | None:
         if tuple(words[has_verb:length]) != phrase:
             continue
         value = failure.tokens[at + length].type
+        if _type_before(failure, at) == "bool":
+            continue  # `finished under 90 s` is about a time
         if phrase in _EQUALITIES:
             kind = _type_before(failure, at)
             if kind not in ("int", "enum"):
@@ -83,6 +85,9 @@ def _number_first(failure: ParseFailure) -> Diagnostic | None:
         if stop is not None and is_compared:
             text = f"{text_of(failure, number + 1, stop)} {sign} {tokens[number].text}"
             return suggest_rewrite(failure, start, stop, text, title)
+        if stop is not None and declared_names(failure.source).type_of(tokens[number + 1].text) == "bool":
+            text = f"times({text_of(failure, number + 1, stop)}) {sign} {tokens[number].text}"
+            return suggest_rewrite(failure, start, stop, text, title, ", which counts how often it has begun")
         help_ = f"write `{sign}` between a value and its limit, as in `coins {sign} {tokens[number].text}`"
         return failure.error("TLT0101", title, help_, span=span_of(tokens[start:number]))
     return None

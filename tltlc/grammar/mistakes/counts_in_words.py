@@ -129,11 +129,14 @@ def _error(
         help_ = FIXED_CLOCK
         if not failure.lacks_fixed_clock(count.time):
             role, head = _role(failure, start) if is_whole else ("", "")
+            clause = _again_within(keyword if is_whole and keyword else role, operand, sign or ">=", count, head)
+            if clause and failure.start == "clause":
+                return suggest_rewrite(failure, 0, end, clause, title)
             help_ = _within_time(keyword if is_whole and keyword else role, operand, sign or ">=", count, head)
     elif count.number == "1" and (sign or ">=") == ">=" and keyword in ("keep", "reach", "require") and is_whole:
-        help_ = f"write `reach {operand}`"
+        return suggest_rewrite(failure, 0, end, f"reach {operand}", title)
     elif (form := _CLAUSES.get((keyword, sign))) and is_whole:
-        help_ = f"write `{form.format(p=operand, n=count.number)}`"
+        return suggest_rewrite(failure, 0, end, form.format(p=operand, n=count.number), title)
     elif sign == "==" and keyword in ("keep", "reach", "require") and is_whole:
         help_ = f"write two clauses: `reach times({operand}) >= {count.number} keep times({operand}) <= {count.number}`"
     elif not sign and keyword in ("keep", "require") and is_whole:
@@ -178,12 +181,20 @@ def _timed_comparison(failure: ParseFailure) -> Diagnostic | None:
 
 def _within_time(keyword: str, operand: str, sign: str, count: _Count, head: str) -> str:
     """Return the help for a count within a time, such as `never seen twice within 10 s`."""
+    clause = _again_within(keyword, operand, sign, count, head)
+    if clause:
+        return f"write `{clause}`"
+    return f"`times({operand})` counts from the first step on: let the game count within a time, and supply the number"
+
+
+def _again_within(keyword: str, operand: str, sign: str, count: _Count, head: str) -> str:
+    """Return the clause for a count of two within a time, such as `never seen twice within 10 s`; else ""."""
     key, time = (sign, count.number), count.time
     if (keyword in ("avoid", "never") and key in _TWICE) or (keyword in ("keep", "require") and key in _AT_MOST_ONCE):
-        return f"write `{begun_again(operand, time, head)}`"
+        return begun_again(operand, time, head)
     if keyword == "reach" and not head and key in _TWICE:
-        return f"write `reach begins {operand} then within {time} begins {operand}`"
-    return f"`times({operand})` counts from the first step on: let the game count within a time, and supply the number"
+        return f"reach begins {operand} then within {time} begins {operand}"
+    return ""
 
 
 def _count_at(tokens: Sequence[Token], start: int) -> _Count | None:

@@ -25,12 +25,16 @@ class DeclaredName:
 
     ``keyword`` is the word that begins the declaration, or ``parameter`` for a parameter of one. ``type``
     is that of a signal or param: ``enum`` for a list of values, ``number`` where none is written. It is
-    empty for other names. ``values`` are the values of an enum.
+    empty for other names. ``values`` are the values of an enum, ``members`` those of a group of entities.
+    ``parameters`` are the names of the parameters, and ``ends`` the texts of the two ends of a range.
     """
 
     keyword: str
     type: str = ""
     values: tuple[str, ...] = ()
+    parameters: tuple[str, ...] = ()
+    members: tuple[str, ...] = ()
+    ends: tuple[str, ...] = ()
 
 
 @record
@@ -88,25 +92,42 @@ def _declared_by(piece: Sequence[Token]) -> Iterator[tuple[str, DeclaredName]]:
     """Yield the names that a declaration declares."""
     head = piece[0]
     if head.type == "ENTITY":
-        for token in piece[1:]:
+        members = tuple(token.text for token in piece[3:] if token.type == "NAME")
+        is_group = len(piece) > 2 and piece[2].type == "EQUAL"
+        for at, token in enumerate(piece[1:]):
             if token.type == "NAME":
-                yield token.text, DeclaredName(head.text)
+                yield token.text, DeclaredName(head.text, members=members if is_group and at == 0 else ())
     if head.type not in _WITH_PARAMETERS or len(piece) < 2 or piece[1].type != "NAME":
         return
+    parameters: tuple[str, ...] = ()
     at = 2
     if at < len(piece) and piece[at].type == "LPAR":
         at = _closing(piece, at) + 1
-        for before, token in pairwise(piece[2:at]):
-            if before.type in ("LPAR", "COMMA") and token.type == "NAME":
-                yield token.text, DeclaredName("parameter")
+        pairs = tuple(pairwise(piece[2:at]))
+        parameters = tuple(
+            token.text for before, token in pairs if before.type in ("LPAR", "COMMA") and token.type == "NAME"
+        )
+        for parameter in parameters:
+            yield parameter, DeclaredName("parameter")
     if head.type not in _TYPED:
-        yield piece[1].text, DeclaredName(head.text)
+        yield piece[1].text, DeclaredName(head.text, parameters=parameters)
     elif at + 1 < len(piece) and piece[at].type == "COLON" and piece[at + 1].type == "LPAR":
         values = tuple(token.text for token in piece[at + 2 : _closing(piece, at + 1)] if token.type == "NAME")
-        yield piece[1].text, DeclaredName(head.text, "enum", values)
+        yield piece[1].text, DeclaredName(head.text, "enum", values, parameters)
     else:
         has_type = at + 1 < len(piece) and piece[at].type == "COLON"
-        yield piece[1].text, DeclaredName(head.text, piece[at + 1].text if has_type else "number")
+        type_ = piece[at + 1].text if has_type else "number"
+        yield piece[1].text, DeclaredName(head.text, type_, (), parameters, (), _ends(piece[at:]))
+
+
+def _ends(piece: Sequence[Token]) -> tuple[str, ...]:
+    """Return the texts of the two ends of a range such as ``in [0 m, 10 m]``; () if there is none."""
+    opening = next((at for at, token in enumerate(piece) if token.type == "LSQB"), len(piece))
+    closing = next((at for at, token in enumerate(piece) if token.type == "RSQB"), 0)
+    inside = piece[opening + 1 : closing]
+    comma = next((at for at, token in enumerate(inside) if token.type == "COMMA"), 0)
+    ends = (inside[:comma], inside[comma + 1 :]) if comma else ()
+    return tuple(" ".join(token.text for token in end) for end in ends)
 
 
 def _closing(piece: Sequence[Token], opening: int) -> int:

@@ -64,6 +64,9 @@ def time_error(failure: ParseFailure, forms: Forms) -> Diagnostic:
     if len(goals) > 1:
         before = operand_text(failure, goals[-2], begin - 1)
         is_clear = not has_token(failure, goals[-2], begin - 1, UNCLEAR | TEMPORAL)
+        if len(goals) > 2 and forms is IN_TIME and kind == "reach" and is_clear_unit:
+            # The time may be that of the last goal or of all of them.
+            return _chain_error(failure, operand_text(failure, begin, at), time)
         form, start = forms["then"], goals[-2]
     elif kind in forms and kind:
         before, form, start, is_clear = "", forms[kind], begin, True
@@ -88,7 +91,10 @@ def time_error(failure: ParseFailure, forms: Forms) -> Diagnostic:
         operand = operand_text(failure, begin, at) if is_clear else "a"
         return _avoided_error(failure, at, operand, _shown_time(failure, time, written))
     if kind == "keep" and forms is FOR_TIME and last is not None and failure.tokens[last].type == "IMPLIES":
-        return _holding_error(failure, operand_text(failure, operator, at), time)
+        is_clear = is_clear_unit and end == stop and _is_clear_operand(failure, operator, at)
+        is_clear = is_clear and failure.tokens[operator].type not in _UNARY - {"NOT"}
+        is_clear = is_clear and not has_token(failure, begin, last, UNCLEAR | TEMPORAL)
+        return _lasting_error(failure, (operator, at), end, time, is_clear=is_clear)
     if kind != "keep":
         is_clear = is_clear and failure.tokens[begin].type not in _UNARY
     is_clear = is_clear and is_clear_unit and end == stop and _is_clear_operand(failure, begin, at)
@@ -147,16 +153,32 @@ def prefix_time_error(failure: ParseFailure, at: int, forms: Forms) -> Diagnosti
     return rewrite_error(failure, at, (start, stop), form, parts if is_clear else None, written)
 
 
-def _holding_error(failure: ParseFailure, operand: str, time: Time) -> Diagnostic:
-    """Return the error for a time for which something holds where a rule asks for it: `keep a implies b for 3 s`."""
+def _chain_error(failure: ParseFailure, goal: str, time: Time) -> Diagnostic:
+    """Return the error for a time behind three goals or more: `reach a then b then c within 5 s`."""
+    title = f"{quote_token(failure.token)} is not an operator"
     if failure.lacks_fixed_clock(time.text):
-        return failure.error("TLT0101", f"{quote_token(failure.token)} is not an operator", FIXED_CLOCK)
-    in_steps = f"historically for {time.text} {operand}"
-    so_far = f"time_holding({operand}) >= {time.text}" if time.is_real else in_steps
+        return failure.error("TLT0101", title, FIXED_CLOCK)
     help_ = (
-        f"write `always for {time.text} {operand}` if it must hold from then on, `{so_far}` if it must have held so far"
+        f"write `then within {time.text} {goal}` if the time begins at the goal before, a clause `limit {time.text}` "
+        "if it is the time for all of them"
     )
-    return failure.error("TLT0101", f"{quote_token(failure.token)} is not an operator", help_)
+    return failure.error("TLT0101", title, help_)
+
+
+def _lasting_error(failure: ParseFailure, part: tuple[int, int], end: int, time: Time, *, is_clear: bool) -> Diagnostic:
+    """Return the error for a time for which something holds where a rule asks for it: `keep a implies b for 3 s`.
+
+    ``part`` is the range of token indices of what holds. The time counts from the step of ``a`` on.
+    """
+    title, (begin, at) = f"{quote_token(failure.token)} is not an operator", part
+    if failure.lacks_fixed_clock(time.text):
+        return failure.error("TLT0101", title, FIXED_CLOCK)
+    operand, text = operand_text(failure, begin, at), f"always for {time.text}"
+    help_ = f"write `{text} {operand}`, which counts from that step on"
+    if not is_clear:
+        return failure.error("TLT0101", title, help_)
+    diagnostic = suggest_rewrite(failure, begin, end, f"{text} {operand}", title, ", which counts from that step on")
+    return diagnostic or failure.error("TLT0101", title, help_)
 
 
 def _sequence_error(failure: ParseFailure, part: tuple[int, int], time: Time) -> Diagnostic:

@@ -65,10 +65,15 @@ def equality(failure: ParseFailure) -> Diagnostic | None:
             ": a `bool` signal is an atom by itself",
         )
     else:
-        text, reason = _EQUAL[sign].format(a=a, b=b), ""
+        at_end = _sign_at_end(failure, (start, at), b, is_unequal)
+        text, reason = f"{a} {at_end} {b}" if at_end else _EQUAL[sign].format(a=a, b=b), ""
+        if at_end:
+            reason = f": the range of `{a}` ends there"
         is_part = (start, stop) != (formula_start(failure), formula_stop(failure))
-        text = f"({text})" if is_part else text
-        if b in ("0", "1"):
+        text = f"({text})" if is_part and not at_end else text
+        if at_end:
+            boolean_text = ""
+        elif b in ("0", "1"):
             boolean_text = a if (b == "1") != is_unequal else f"not {a}"
             reason = f", or `{boolean_text}` if its value is true or false"
         elif _is_atom(failure, start, at) and _is_atom(failure, at + 1, stop):
@@ -145,6 +150,17 @@ def _declared_type(failure: ParseFailure, side: Range) -> str:
     """Return the declared type of a name, perhaps with arguments; empty for other texts."""
     is_name = side[0] < side[1] and operand_end(failure.tokens, side[0]) == side[1]
     return declared_names(failure.source).type_of(failure.tokens[side[0]].text) if is_name else ""
+
+
+def _sign_at_end(failure: ParseFailure, side: Range, value: str, is_unequal: bool) -> str:
+    """Return the sign that compares a number with an end of its range: ``x >= 3`` for `x == 3` in [0, 3]; else ""."""
+    declared = declared_names(failure.source).names.get(failure.tokens[side[0]].text)
+    if declared is None or len(declared.ends) != 2 or not _declared_type(failure, side):
+        return ""
+    low, high = (value in (end, end.split()[0]) for end in declared.ends)
+    if low == high:
+        return ""
+    return {(True, False): "<=", (True, True): ">", (False, False): ">=", (False, True): "<"}[low, is_unequal]
 
 
 def _enum_values(failure: ParseFailure, side: Range) -> tuple[str, ...]:

@@ -33,6 +33,13 @@ _STARTS: Final = {
 }
 _PREFIXES: Final = (_STARTS - {"NAME", "STRING"}) | {"WHEN"}
 """Tokens that can begin a formula but not continue one."""
+_OPENING_WORDS: Final = frozenset(
+    "after once if when whenever while given within the player you must each every".split()
+)
+"""Words that begin a sentence which may go on with the keyword of a clause on the same line."""
+_SCENARIO: Final = ("given", "when")
+_STEPS: Final = ("then", "and", "but")
+"""Words that begin the lines of a scenario."""
 _OTHERS: Final = DECLARATIONS.keys() - {"spec", "test"}
 
 
@@ -66,7 +73,13 @@ def lines(source: SourceFile, tokens: Sequence[Token], keywords: dict[str, str])
     piece: list[Token] = []
     for index, token in enumerate(tokens):
         is_declaration = _begins_other(source, tokens, index)
-        if piece and (is_declaration or _begins_piece(source, tokens, index, keywords, True)):
+        is_first = is_first_on_line(source, tokens, index)
+        opens = piece[0].text.lower() if piece and keywords is CLAUSES else ""
+        # `after seen keep hidden for 3 s` is one sentence, and so are the lines of a scenario.
+        is_inside = opens in _OPENING_WORDS and not is_first
+        is_inside |= opens in _SCENARIO and is_first and token.text.lower() in (*_SCENARIO, *_STEPS)
+        begins = is_declaration or (not is_inside and _begins_piece(source, tokens, index, keywords, True))
+        if piece and begins:
             yield piece
             piece = []
         piece.append(token)

@@ -24,7 +24,14 @@ from tltlc.grammar.mistakes.parse_failure import (
     outer_indices,
     quote_token,
 )
-from tltlc.grammar.mistakes.rephrasing import formula_start, formula_stop, span_of, suggest_rewrite, text_of
+from tltlc.grammar.mistakes.rephrasing import (
+    formula_start,
+    formula_stop,
+    operand_start,
+    span_of,
+    suggest_rewrite,
+    text_of,
+)
 from tltlc.grammar.tables import load
 
 
@@ -116,13 +123,17 @@ def foreign_unit(failure: ParseFailure) -> Diagnostic | None:
     number, token = failure.previous_token, failure.token
     if number is None or number.type != "NUMBER" or token.type != "NAME" or "UNIT" not in failure.allowed_terminals:
         return None
+    if token.text in VERBS and failure.tokens[failure.stop.index + 1].text in ("true", "false"):
+        return _truth_of_comparison(failure)
     if token.text in VERBS and failure.allowed_terminals & COMPARISONS:
         return None  # `x + 1 is 3`
     if token.text.isupper() and token.text.lower() in load().words:
         return None
     title = f"{quote_token(token)} is not a unit"
     known = UNITS_ELSEWHERE.get(token.text.lower())
-    if known == "%":
+    compared = operand_start(failure.tokens, failure.stop.index - 2)
+    is_ratio = compared is not None and declared_names(failure.source).type_of(failure.tokens[compared].text) == "ratio"
+    if known == "%" and not is_ratio:
         # A signal with values from 0 to 100 is compared with the number alone.
         help_ = (
             f"for a ratio, write `{number.text} %`, which is {number.text}/100; otherwise write `{number.text}` alone"
@@ -147,6 +158,18 @@ def foreign_unit(failure: ParseFailure) -> Diagnostic | None:
     listed = ", ".join(f"`{name}`" for name in sorted(load().units))
     help_ = f"the units are {listed}; to compare a signal, write `{token.text} >= {number.text}`"
     return failure.error("TLT0111", title, help_)
+
+
+def _truth_of_comparison(failure: ParseFailure) -> Diagnostic:
+    """Return the error for `is true` or `is false` after a comparison, as in ``health > 3 is true``."""
+    tokens, at = failure.tokens, failure.stop.index
+    span = span_of(tokens[at - 1 : at + 2])
+    title = f"{quote_token(tokens[at])} is not an operator"
+    if tokens[at + 1].text == "true":
+        help_ = f"leave out `{tokens[at].text} true`: a comparison is true or false by itself"
+        return failure.error("TLT0101", title, help_, span=span, write=tokens[at - 1].text)
+    help_ = f"leave out `{tokens[at].text} false`, and put `not` before the comparison"
+    return failure.error("TLT0101", title, help_, span=span)
 
 
 def _compared_steps(failure: ParseFailure, number: str, title: str) -> Diagnostic:
@@ -194,7 +217,11 @@ def prefix_between_formulas(failure: ParseFailure) -> Diagnostic | None:
     title = f"{quote_token(token)} belongs before one formula, not between two"
     # Beside another operator, `and` may bind too tightly; `next` and `always` may follow `and`, `implies` or `then`.
     indices = outer_indices(failure.tokens, formula_start(failure), formula_stop(failure))
-    is_clear = token.type == "NOT" and all(failure.tokens[index].type not in INFIX - {"AND"} for index in indices)
+    is_clear = (
+        token.type == "NOT"
+        and failure.tokens[following].type not in INFIX
+        and all(failure.tokens[index].type not in INFIX - {"AND"} for index in indices)
+    )
     return failure.error("TLT0101", title, f"write `{replacement}`", write=replacement if is_clear else None)
 
 

@@ -16,7 +16,7 @@ from tltlc.grammar import lalr, past_words
 from tltlc.grammar.keywords import CASES, CLAUSES, DECLARATIONS, closest_word
 from tltlc.grammar.lexer import Token
 from tltlc.grammar.mistakes.answers_in_rules import answer_in_rule
-from tltlc.grammar.mistakes.clauses import CLAUSE_RULES
+from tltlc.grammar.mistakes.clauses import CLAUSE_RULES, synonym_inside_formula
 from tltlc.grammar.mistakes.comparison_words import comparison_in_words
 from tltlc.grammar.mistakes.counts_in_words import never_counted
 from tltlc.grammar.mistakes.declared_names import declared_names
@@ -26,16 +26,15 @@ from tltlc.grammar.mistakes.english_rewrite import FIXED_CLOCK
 from tltlc.grammar.mistakes.english_times import never_for_time, until_time
 from tltlc.grammar.mistakes.equalities import verb_is
 from tltlc.grammar.mistakes.filler_words import filler_word
-from tltlc.grammar.mistakes.fragments import is_first_on_line
-from tltlc.grammar.mistakes.habits import HABITS, dash_comment, long_arrow
+from tltlc.grammar.mistakes.habits import HABITS, dash_comment, foreign_unit, long_arrow, prefix_between_formulas
 from tltlc.grammar.mistakes.misused_operators import misread_index, stop_at
+from tltlc.grammar.mistakes.names_side_by_side import is_before_operand, names_side_by_side
 from tltlc.grammar.mistakes.negated_answers import negated_answer_in_rule
 from tltlc.grammar.mistakes.one_reading import has_token
 from tltlc.grammar.mistakes.parse_failure import (
     BEFORE_ONE,
     INFIX,
     OPENING,
-    OPERAND,
     UNTILS,
     ParseFailure,
     quote_token,
@@ -45,9 +44,10 @@ from tltlc.grammar.mistakes.prohibitions import never_joined
 from tltlc.grammar.mistakes.punctuation import PUNCTUATION, missing_comma
 from tltlc.grammar.mistakes.quantifier_words import quantifier_in_words
 from tltlc.grammar.mistakes.renaming import word_of_the_past
-from tltlc.grammar.mistakes.rephrasing import formula_stop, span_of, text_of
+from tltlc.grammar.mistakes.rephrasing import formula_stop, text_of
 from tltlc.grammar.mistakes.responses import colon_after_event, response_in_english
 from tltlc.grammar.mistakes.rules_in_words import rule_in_words
+from tltlc.grammar.mistakes.sentences.reading import sentence_help
 from tltlc.grammar.mistakes.unknown_signs import unknown_sign
 from tltlc.grammar.tables import load
 
@@ -60,11 +60,6 @@ _BOUNDED_UNTILS: Final = {
     "STRONG_RELEASE": "(b U (a & b)) & F[0,20] (a & b)",
 }
 """Maps the terminal of an operator such as `U`, which takes no bound, to a formula for ``a U[0,20] b``."""
-
-_AFTER: Final = (
-    "write `keep a implies b` for a rule about each step with `a`, `keep a implies always b` for one from then on, "
-    "`reach a then b` for an order"
-)
 
 
 def unexpected_token(
@@ -83,8 +78,9 @@ def unexpected_token(
     for rule in _RULES:
         diagnostic = rule(failure)
         if diagnostic:
-            return diagnostic
-    return failure.error("TLT0101", failure.expectation(), failure.form())
+            return sentence_help(failure, diagnostic, is_explained=rule not in _OPEN_RULES)
+    diagnostic = failure.error("TLT0101", failure.expectation(), failure.form())
+    return sentence_help(failure, diagnostic, is_explained=False)
 
 
 def unclosed_bracket(source: SourceFile, opening: Token) -> Diagnostic:
@@ -258,7 +254,7 @@ def _misspelt_operator(failure: ParseFailure) -> Diagnostic | None:
         return failure.error("TLT0101", "`else` is not an operator", help_)
     words = tuple(word for word, terminal in load().words.items() if terminal in INFIX and len(word) > 1)
     suggestion = closest_word(token.text, words) if token.type == "NAME" else None
-    if suggestion and _is_before_operand(failure):
+    if suggestion and is_before_operand(failure):
         return failure.error("TLT0101", failure.expectation(), None, f"did you mean `{suggestion}`?", write=suggestion)
     operator = before.text.lower()
     if operator not in load().words and operator != "no":
@@ -274,14 +270,11 @@ def _misspelt_operator(failure: ParseFailure) -> Diagnostic | None:
         return failure.error(
             "TLT0101", title, "write `(not a) or b` to negate `a` alone, `not (a or b)` to negate both"
         )
+    if operator == "no" and failure.tokens[0].text == "reach" and failure.start == "clause":
+        help_ = "write `not a` if it is about that step, a clause `avoid a` if it must never hold"
+        return failure.error("TLT0101", title, help_, span=before.span)
     operator = "not" if operator == "no" else operator
     return failure.error("TLT0101", title, None, f"did you mean `{operator}`?", before.span, write=operator)
-
-
-def _is_before_operand(failure: ParseFailure) -> bool:
-    """Whether an operand, or an operator before its operand, follows the token that does not fit."""
-    after = failure.tokens[failure.stop.index + 1]
-    return after.type in OPERAND | BEFORE_ONE
 
 
 def _foreign_otherwise(failure: ParseFailure) -> Diagnostic | None:
@@ -301,28 +294,6 @@ def _case_form(failure: ParseFailure) -> Diagnostic | None:
     if not any(token.type == "WHEN" for token in failure.tokens[: failure.stop.index]):
         return None
     return failure.error("TLT0101", failure.expectation(), CASES)
-
-
-def _names_side_by_side(failure: ParseFailure) -> Diagnostic | None:
-    """Return an error if two names have no operator between them, as in ``near s1``, else None."""
-    before, token = failure.previous_token, failure.token
-    if before is None or token.type != "NAME" or not failure.wants_operator or before.type not in ("NAME", "RPAR"):
-        return None
-    if is_first_on_line(failure.source, failure.tokens, failure.stop.index):
-        return None
-    if before.type == "RPAR" or failure.tokens[failure.stop.index + 1].type == "LPAR":
-        title = f"expected an operator between {quote_token(before)} and {quote_token(token)}"
-        return failure.error("TLT0101", title, "join formulas with `and`, `or` or `then`")
-    if _is_before_operand(failure):
-        return failure.error(
-            "TLT0101", f"{quote_token(token)} is not an operator", "join formulas with `and`, `or` or `then`"
-        )
-    text = f"{before.text}({token.text})"
-    if before.text == "after" and before.text not in declared_names(failure.source).names:
-        return failure.error("TLT0101", "`after` is not an operator", _AFTER, span=before.span)
-    help_ = f"write `{text}` if `{before.text}` applies to `{token.text}`; otherwise join them with `and` or `then`"
-    title = f"{quote_token(before)} and {quote_token(token)} are not joined"
-    return failure.error("TLT0101", title, help_, span=span_of([before, token]), write=text)
 
 
 def _operator_for_name(failure: ParseFailure) -> Diagnostic | None:
@@ -371,7 +342,20 @@ _RULES: Final = (
     verb_is,
     _misspelt_operator,
     missing_comma,
-    _names_side_by_side,
+    names_side_by_side,
     _operator_for_name,
     _case_form,
 )
+
+_OPEN_RULES: Final = (
+    past_in_english,
+    names_side_by_side,
+    _quantifier_head,
+    _misspelt_operator,
+    foreign_unit,
+    prefix_between_formulas,
+    synonym_inside_formula,
+    missing_comma,
+    verb_is,
+)
+"""Rules that say little about the meaning of a clause: reading it as a sentence may say more."""

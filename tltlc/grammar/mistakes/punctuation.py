@@ -11,7 +11,7 @@ from collections.abc import Callable
 from typing import Final
 
 from tltlc.diagnostics.diagnostic import Diagnostic
-from tltlc.grammar.keywords import CLAUSES, TEST_ITEMS
+from tltlc.grammar.keywords import CLAUSES, TEST_ITEMS, UNITS_ELSEWHERE
 from tltlc.grammar.lexer import END, tokenize
 from tltlc.grammar.mistakes.fragments import is_first_on_line
 from tltlc.grammar.mistakes.one_reading import QUANTIFIERS, UNCLEAR, has_token
@@ -70,8 +70,9 @@ def _comma_before_clause(failure: ParseFailure) -> Diagnostic:
     """Return the error for a comma between two clauses: ``avoid a, reach b``."""
     at, first = failure.stop.index, failure.tokens[0].text
     word, title, span = failure.tokens[at + 1].text, "`,` cannot join clauses", span_of(failure.tokens[at : at + 2])
-    # After a goal, `keep` or `avoid` may apply from there on; and what follows `or` may be an alternative.
-    is_clear = first != "reach" and not has_token(failure, 1, at, UNCLEAR | BEFORE_ONE | QUANTIFIERS | {"OR"})
+    # After a goal, `keep` may apply from there on; and what follows `or` may be an alternative.
+    is_clear = first != "reach" or word == "avoid"
+    is_clear = is_clear and not has_token(failure, 1, at, UNCLEAR | BEFORE_ONE | QUANTIFIERS | {"OR"})
     if not is_clear:
         help_ = f"leave out the comma, and begin a new line with `{word}`: all clauses count"
         return failure.error("TLT0104", title, help_, span=span)
@@ -343,6 +344,26 @@ def missing_in(failure: ParseFailure) -> Diagnostic | None:
     return failure.error("TLT0101", failure.expectation(), "write `in [`", write="in [")
 
 
+def unit_behind_range(failure: ParseFailure) -> Diagnostic | None:
+    """Return an error for a unit behind a range, as in ``speed in [0, 10] m/s``, else None."""
+    tokens, at = failure.tokens, failure.stop.index
+    before = failure.previous_token
+    if tokens[0].type not in ("SIGNAL", "PARAM") or before is None or before.type != "RSQB":
+        return None
+    stop = next((i for i in range(at, len(tokens)) if tokens[i].type in (END, "EQUAL")), at)
+    opening = next((i for i in range(at - 1, 0, -1) if tokens[i].type == "LSQB"), at)
+    ends = [index for index in range(opening, at) if tokens[index].type == "NUMBER"]
+    has_units = any(tokens[index].type == "UNIT" for index in range(opening, at))
+    if stop == at or not ends or has_units:
+        return None
+    unit = "".join(token.text for token in tokens[at:stop])
+    unit = UNITS_ELSEWHERE.get(unit.lower(), unit)
+    pieces = [f"{token.text} {unit}" if token.type == "NUMBER" else token.text for token in tokens[opening:at]]
+    text = "".join(f"{piece} " if piece == "," else piece for piece in pieces)
+    title = f"`{unit}` cannot stand behind a range"
+    return suggest_rewrite(failure, opening, stop, text, title, ": each end has its unit")
+
+
 def leave_out_help(failure: ParseFailure) -> str:
     """Return a help text that says to leave out a character, such as the ``;`` after a clause."""
     between = {"clause": "clauses", "declaration": "declarations"}.get(failure.start)
@@ -360,5 +381,6 @@ PUNCTUATION: Final[tuple[Callable[[ParseFailure], Diagnostic | None], ...]] = (
     type_without_name,
     several_names,
     missing_in,
+    unit_behind_range,
     wrong_brackets,
 )

@@ -1,0 +1,129 @@
+"""The phrases that designers type, and what becomes of them: compiled, helped, or not."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import cache
+from pathlib import Path
+from typing import Literal
+
+from tltlc import Fspa, compile_text
+from tltlc.core.record import record
+from tltlc.core.source import SourceFile
+from tltlc.diagnostics.diagnostic import Diagnostic
+from tltlc.grammar.parser import parse
+from tltlc.io.toml_text import parse as parse_toml
+from tltlc.pipeline import compile_source
+from tltlc.resolve.resolution import resolve
+from tltlc.tools.diff.relation import compare
+from tltlc.tools.explain.explanation import explain
+from tltlc.tools.lint.run import lint
+from tltlc.tools.lint.scopes import apply_edits
+
+FOLDER = Path(__file__).parent / "phrases"
+MOST_ROUNDS = 3
+"""The most fixes that are applied to one phrase, each for another error."""
+
+Kind = Literal["right", "helped", "not helped", "warned", "wrong"]
+
+
+@record
+class Phrase:
+    """A phrase as typed, the clauses that were meant, and their formula.
+
+    ``also`` has other clauses that the phrase may mean; either reading is right. ``explain`` is what
+    ``tltlc explain`` says of the clauses that were meant.
+    """
+
+    source: str
+    prelude: str
+    typed: str
+    meant: str
+    formula: str
+    explain: str = ""
+    also: str = ""
+
+
+@record
+class Outcome:
+    """What becomes of a phrase, and the text that it ends as.
+
+    ``right``: it compiles as it stands to what is meant. ``helped``: it does after the fixes that are
+    offered first. ``warned``: it ends as something else, but the linter says so. ``wrong``: it ends as
+    something else, and nothing says so. ``not helped``: an error is left that offers no fix.
+    """
+
+    kind: Kind
+    text: str
+    message: str = ""
+
+
+def phrases() -> Iterator[Phrase]:
+    for path in sorted(FOLDER.glob("*.toml")):
+        for entry in parse_toml(SourceFile(path.name, path.read_text()), "TLT0001", "")["phrase"]:
+            yield Phrase(source=path.stem, **entry)
+
+
+def prelude(name: str) -> str:
+    return (FOLDER / "preludes" / f"{name}.tltl").read_text()
+
+
+def spec_text(phrase: Phrase, clauses: str) -> str:
+    return f"{prelude(phrase.prelude)}spec s {{\n{clauses.strip()}\n}}\n"
+
+
+def errors(source: SourceFile) -> list[Diagnostic]:
+    """Return the errors of a text, in the order in which they are shown."""
+    module, syntax_errors = parse(source)
+    diagnostics = (*syntax_errors, *resolve(module).diagnostics)
+    return [diagnostic for diagnostic in diagnostics if diagnostic.severity == "error"]
+
+
+def fix(text: str) -> tuple[str, list[Diagnostic]]:
+    """Apply the fixes that are offered first, at most ``MOST_ROUNDS``; also return the errors that are left."""
+    for _ in range(MOST_ROUNDS):
+        source = SourceFile("a.tltl", text)
+        left = errors(source)
+        fixes = [diagnostic.fixes[0] for diagnostic in left if diagnostic.fixes]
+        if not fixes:
+            return text, left
+        text = apply_edits(source, fixes[0].edits).text
+    return text, errors(SourceFile("a.tltl", text))
+
+
+@cache
+def automaton(text: str) -> Fspa:
+    (fspa,) = compile_text(text)
+    return fspa
+
+
+def sentence(text: str) -> str:
+    """Return what ``tltlc explain`` says of the only spec of a text."""
+    return explain(automaton(text)).english
+
+
+def is_equivalent(one: str, other: str) -> bool:
+    """Whether two texts have specs with the same limit that accept the same traces."""
+    a, b = automaton(one), automaton(other)
+    comparison = compare(a, b, feasible_only=True)
+    assert comparison.relation != "undecided", (one, other)
+    return a.limit_steps == b.limit_steps and comparison.relation == "equivalent"
+
+
+def warnings(text: str) -> set[str]:
+    """Return the codes of what the compiler and the linter say of a text that compiles."""
+    compiled = compile_source(SourceFile("a.tltl", text))
+    findings = (finding.diagnostic for finding in lint(SourceFile("a.tltl", text)))
+    return {diagnostic.code for diagnostic in (*compiled.diagnostics, *findings) if diagnostic.severity != "note"}
+
+
+def outcome(phrase: Phrase) -> Outcome:
+    typed = spec_text(phrase, phrase.typed)
+    text, left = fix(typed)
+    if left:
+        return Outcome("not helped", text, f"{left[0].title}; {left[0].help}")
+    readings = [spec_text(phrase, clauses) for clauses in (phrase.meant, phrase.also) if clauses]
+    if any(is_equivalent(text, reading) for reading in readings):
+        return Outcome("right" if text == typed else "helped", text, sentence(text))
+    new = warnings(text) - warnings(readings[0])
+    return Outcome("warned" if new else "wrong", text, ", ".join(sorted(new)) or sentence(text))

@@ -1,0 +1,126 @@
+"""Read what is asked for after a condition: ``hidden within 5 s``, ``invulnerable for 1 s``, ``never firing``."""
+
+from __future__ import annotations
+
+from typing import Final, Literal
+
+from tltlc.core.record import record
+from tltlc.grammar.mistakes.sentences.states import ATOM, OR, State, state_of
+from tltlc.grammar.mistakes.sentences.vocabulary import (
+    ALWAYS,
+    COPULAS,
+    FOR,
+    MODALS,
+    NOT,
+    PROHIBITIONS,
+    SUBJECTS,
+    WITHIN,
+)
+from tltlc.grammar.mistakes.sentences.words import Phrase, Words, phrases
+
+Kind = Literal["now", "within", "lasting", "delayed", "eventually", "always", "next"]
+
+_BY_WORD: Final[tuple[tuple[tuple[Phrase, ...], Kind], ...]] = (
+    (phrases("eventually", "at some point", "sooner or later", "later", "finally"), "eventually"),
+    ((*ALWAYS, *phrases("forever", "for ever", "from then on", "for good", "stays true", "stay true")), "always"),
+    (phrases("next"), "next"),
+    (phrases("immediately", "instantly", "at once", "right away", "also", "then"), "now"),
+)
+"""Words before or after what is asked for, and the kind of answer that they make."""
+
+
+@record
+class Answer:
+    """A condition that must hold: at the step of the event, within a time from it on, or in another way.
+
+    ``time`` is the text of a time; "" for kinds without one. ``is_negative`` says that the condition is
+    the opposite of what the sentence names.
+    """
+
+    kind: Kind
+    state: State
+    time: str = ""
+    is_negative: bool = False
+
+
+def answer_of(words: Words) -> Answer | None:
+    """Return what words ask for, or None if it is unclear."""
+    words = words.without([*SUBJECTS, (",",), ("then",)])
+    is_kept = words.word(0) == "keep"
+    prohibition = words.phrase(0, PROHIBITIONS)
+    if prohibition:
+        answer = _affirmative(words[len(prohibition) :])
+        return None if answer is None else _negated(answer, is_never="no" not in prohibition)
+    if words.word(0) == "not":
+        answer = _affirmative(words[1:])
+        return None if answer is None or answer.kind not in ("now", "lasting", "within") else _negated(answer)
+    words = words.without([*MODALS, ("keep",)])
+    modal = words.find(MODALS)
+    if modal is not None and not words[modal[0] + len(modal[1]) :].phrase(0, NOT):
+        words = words[: modal[0]].followed_by(words[modal[0] + len(modal[1]) :])
+    answer = _affirmative(words)
+    # `if a, keep b` may ask for b from then on, too.
+    return None if is_kept and answer is not None and answer.kind == "now" else answer
+
+
+def clause_of(event: State, answer: Answer) -> str:
+    """Return the clause that asks for an answer at each step with an event."""
+    condition, state, time = event.at(OR), answer.state, answer.time
+    if answer.kind == "now":
+        return f"keep {condition} implies {state.at(OR)}"
+    if answer.kind == "within" and answer.is_negative:
+        return f"keep {condition} implies not eventually within {time} {state.negated().at(ATOM)}"
+    if answer.kind == "within":
+        return f"keep within {time} of {event.at(OR)}, {state.at(OR)}"
+    operators = {
+        "lasting": f"always for {time}",
+        "delayed": f"next after {time}",
+        "eventually": "eventually",
+        "always": "always",
+        "next": "next",
+    }
+    return f"keep {condition} implies {operators[answer.kind]} {state.at(ATOM)}"
+
+
+def _negated(answer: Answer, *, is_never: bool = False) -> Answer | None:
+    """Return the answer that asks for the opposite; `never a` asks for it from then on."""
+    if answer.kind not in ("now", "lasting", "within", "always"):
+        return None
+    kind: Kind = "always" if is_never and answer.kind == "now" else answer.kind
+    return Answer(kind, answer.state.negated(), answer.time, True)
+
+
+def _affirmative(words: Words) -> Answer | None:
+    words = words.without([*SUBJECTS, *COPULAS])
+    for known, kind in _BY_WORD:
+        phrase = words.phrase(0, known)
+        if phrase:
+            state = state_of(words[len(phrase) :].without(COPULAS))
+            return None if state is None else Answer(kind, state)
+        found = words.find_last(known)
+        if found is not None and found[0] and found[0] + len(found[1]) == len(words):
+            state = state_of(words[: found[0]])
+            return None if state is None else Answer(kind, state)
+    timed = _timed(words)
+    if timed is not None:
+        return timed
+    state = state_of(words)
+    return None if state is None else Answer("now", state)
+
+
+def _timed(words: Words) -> Answer | None:
+    """Return an answer with a time, which stands first or last."""
+    for known, kind in ((WITHIN, "within"), (FOR, "lasting"), (phrases("after"), "delayed")):
+        phrase = words.phrase(0, known)
+        time = words.time(len(phrase)) if phrase else None
+        if time is not None:
+            rest, length = words[time[1] :].without([(",",)]), time[0].text
+        else:
+            found = words.find_last(known)
+            time = None if found is None else words.time(found[0] + len(found[1]))
+            if found is None or time is None or time[1] != len(words):
+                continue
+            rest, length = words[: found[0]], time[0].text
+        state = state_of(rest.without(COPULAS))
+        return None if state is None else Answer(kind, state, length)  # type: ignore[arg-type]
+    return None

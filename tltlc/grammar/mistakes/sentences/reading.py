@@ -1,0 +1,172 @@
+"""Read a clause that cannot be parsed as an English sentence, and suggest the clauses that say the same."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from tltlc.core.record import replace
+from tltlc.core.source import SourceFile, Span
+from tltlc.diagnostics.diagnostic import Diagnostic, Edit, Fix, replacement_fix
+from tltlc.grammar import lalr, tree_checks
+from tltlc.grammar.builder import Builder
+from tltlc.grammar.lexer import END, tokenize
+from tltlc.grammar.mistakes.clauses import is_own_line
+from tltlc.grammar.mistakes.declared_names import declared_names
+from tltlc.grammar.mistakes.parse_failure import ParseFailure
+from tltlc.grammar.mistakes.rephrasing import span_of
+from tltlc.grammar.mistakes.sentences.goals import goal_of
+from tltlc.grammar.mistakes.sentences.rules import Clauses, rule_of
+from tltlc.grammar.mistakes.sentences.states import state_of
+from tltlc.grammar.mistakes.sentences.two_readings import both_readings
+from tltlc.grammar.mistakes.sentences.vocabulary import ENGLISH, FILLERS, NEVER, PROHIBITIONS, SUBJECTS
+from tltlc.grammar.mistakes.sentences.words import Words, phrases, words_of
+from tltlc.grammar.tables import load
+
+_JOINTS: Final = phrases("and", ",", ", and", "but", ", but", ";", ".", "without", "while")
+_HEADINGS: Final = ("scenario", "feature", "background", "example")
+_LONGEST: Final = 60
+"""The most tokens of a sentence; a longer clause is hardly one."""
+_KEYWORDS: Final = ("reach", "keep", "avoid", "require", "limit")
+
+
+def sentence_help(failure: ParseFailure, diagnostic: Diagnostic, *, is_explained: bool) -> Diagnostic:
+    """Return the error for a clause with the fix that its English sentence suggests, if it has one reading.
+
+    The error stays as it is if its fix leaves no error, or if the sentence is unclear. ``is_explained``
+    says that the error is about a mistake in a clause of the language: then its help stays, too.
+    """
+    if failure.start != "clause" or failure.tokens[-1].type != END or len(failure.tokens) > _LONGEST:
+        return diagnostic
+    if failure.tokens[0].text.lower() in _HEADINGS and failure.tokens[1].text == ":":
+        at = Span(failure.tokens[0].start, failure.tokens[0].start)
+        fix = Fix("Write `//` before it", (Edit(at, "// "),))
+        return replace(diagnostic, help="write `//` before it: a heading is a comment", fixes=(fix,))
+    words = _words(failure)
+    if words.word(0) == "require" or not (failure.tokens[0].text in _KEYWORDS or is_own_line(failure)):
+        return diagnostic
+    if not words.find(FILLERS):
+        if diagnostic.fixes and _is_mended(failure, diagnostic.fixes[0]):
+            return diagnostic
+        if not diagnostic.fixes and failure.tokens[0].text in _KEYWORDS and is_explained:
+            return diagnostic
+    clauses = _sentence(words) if words else None
+    span = span_of(failure.tokens[:-1])
+    if clauses is None and not diagnostic.fixes and failure.tokens[0].text not in _KEYWORDS:
+        return replace(diagnostic, help=both_readings(words) or diagnostic.help)
+    if clauses is None or "//" in failure.source.slice(span):
+        return diagnostic
+    text = " ".join(clauses)
+    if text == " ".join(failure.source.slice(span).split()):
+        return diagnostic  # the error is about a name or a value
+    if failure.lacks_fixed_clock(text) or not _is_valid(clauses):
+        return diagnostic
+    quoted = " and ".join(f"`{clause}`" for clause in clauses)
+    indent = failure.source.text[: span.start].rpartition("\n")[2]
+    separator = f"\n{indent}" if not indent.strip() else " "
+    fix = replacement_fix(failure.source, span, separator.join(clauses))
+    return replace(diagnostic, help=f"write {quoted}", fixes=(replace(fix, title=f"Write {quoted}"),))
+
+
+def _is_mended(failure: ParseFailure, fix: Fix) -> bool:
+    """Whether a fix leaves no syntax error in the piece; always true for a fix that is not within the piece."""
+    piece = span_of(failure.tokens[:-1])
+    if not all(piece.start <= edit.span.start and edit.span.end <= piece.end for edit in fix.edits):
+        return True
+    text, end = "", piece.start
+    for edit in sorted(fix.edits, key=lambda edit: edit.span.start):
+        text += failure.source.text[end : edit.span.start] + edit.text
+        end = edit.span.end
+    body = text + failure.source.text[end : piece.end]
+    source = SourceFile("", f"spec s {{ {body} }}", "text")
+    lexed = tokenize(source.text)
+    try:
+        lalr.run(load(), "module", lexed.tokens, Builder(source, lexed.docs))
+    except lalr.UnexpectedTokenError:
+        return False
+    return True
+
+
+def _words(failure: ParseFailure) -> Words:
+    """Return the words of a piece of a spec, without a label before them and a stop behind them."""
+    words = words_of(failure.source, declared_names(failure.source), failure.tokens[:-1], ENGLISH)
+    while words and words[-1].text in (".", ";", "!") and len(words) > 1:
+        words = words[:-1]
+    return _without_label(words)
+
+
+def _without_label(words: Words) -> Words:
+    """Return the words after a label such as `bonus:`, if a clause follows."""
+    found = words.find([(":",)])
+    if found is None or words.word(0) in ("if", "when", "whenever", "while", "after", "once", "all", "any"):
+        return words
+    rest = words[found[0] + 1 :]
+    return rest if rest.word(0) in _KEYWORDS else words
+
+
+def _sentence(words: Words) -> Clauses | None:
+    return _own_clause(words) or _joined(words) or rule_of(words) or goal_of(words)
+
+
+def _own_clause(words: Words) -> Clauses | None:
+    """Return a clause that can be parsed as it stands."""
+    return (words.text,) if words.word(0) in _KEYWORDS and _is_valid((words.text,)) else None
+
+
+def _joined(words: Words) -> Clauses | None:
+    """Return the clauses of two sentences that a word joins: `reach the exit and never be seen`."""
+    joint = _joint(words)
+    if joint is None:
+        return None
+    left, right = words[: joint[0]], words[joint[0] + len(joint[1]) :]
+    first = _unconditional(left)
+    if first is None:
+        return None
+    if joint[1] == ("without",):
+        if left.find(phrases("and", "or", "then", ",")) or words.word(0) not in ("reach", "keep"):
+            return None  # it may be about the last goal alone
+        state = state_of(right.without(phrases("ever", "being", "ever being")))
+        return None if state is None else (*first, f"avoid {state.text}")
+    second = _sentence(right)
+    return None if second is None else (*first, *second)
+
+
+def _joint(words: Words) -> tuple[int, tuple[str, ...]] | None:
+    """Return where a sentence ends, and another begins with its own keyword or `never`; None if there is one alone."""
+    start = 1
+    while found := words.find(_JOINTS, start):
+        at, joint = found
+        following = words[at + len(joint) :].without(SUBJECTS)
+        is_forbidding = bool(following.phrase(0, PROHIBITIONS))
+        begins = following.word(0) in _KEYWORDS and words.word(0) not in ("reach", "keep")
+        if joint == ("without",) or is_forbidding or begins:
+            return found
+        start = at + len(joint)
+    return None
+
+
+def _unconditional(words: Words) -> Clauses | None:
+    """Return the clauses of a sentence without a condition, which could apply to the next sentence, too."""
+    if words.word(0) in _KEYWORDS:
+        own = _own_clause(words)
+        if own is not None:
+            return None if words.find(phrases("implies", "or", "until", "->")) else own
+    goal = goal_of(words)
+    if goal is not None:
+        return goal
+    is_plain = words.word(0) in ("avoid", "no") or bool(words.phrase(0, NEVER))
+    return rule_of(words) if is_plain else None
+
+
+def _is_valid(clauses: Clauses) -> bool:
+    """Whether clauses can be parsed."""
+    for clause in clauses:
+        source = SourceFile("", clause, "text")
+        lexed = tokenize(clause)
+        builder = Builder(source, lexed.docs)
+        try:
+            node = lalr.run(load(), "clause", lexed.tokens, builder)
+        except lalr.UnexpectedTokenError:
+            return False
+        if [*builder.diagnostics, *tree_checks.check_clause(source, node)]:
+            return False
+    return True

@@ -1,0 +1,325 @@
+"""Read rules: ``jumping only if on_ground``, ``when died, respawned within 5 s``, ``never boosting in the pit``."""
+
+from __future__ import annotations
+
+from tltlc.grammar.mistakes.sentences.answers import Answer, answer_of, clause_of
+from tltlc.grammar.mistakes.sentences.states import (
+    ATOM,
+    OR,
+    RULE,
+    State,
+    count_of,
+    holding_of,
+    is_event,
+    is_value,
+    joined,
+    state_of,
+)
+from tltlc.grammar.mistakes.sentences.vocabulary import (
+    ALWAYS,
+    AT_ONCE,
+    COMPARISONS,
+    COPULAS,
+    FROM_THEN,
+    MODALS,
+    NEGATED_SIGN,
+    NEVER,
+    ONLY_AFTER,
+    ONLY_WHEN,
+    PROHIBITIONS,
+    SAME_STEP,
+    SUBJECTS,
+    UNLESS,
+    UNTIL,
+)
+from tltlc.grammar.mistakes.sentences.words import Words, phrases
+
+Clauses = tuple[str, ...]
+
+
+def rule_of(words: Words) -> Clauses | None:
+    """Return the clauses for a rule in English, or None if the words are no rule, or it is unclear which."""
+    for read in (_scenario, _implication, _condition_first, _condition_last, _unconditional):
+        clauses = read(words)
+        if clauses is not None:
+            return clauses
+    return None
+
+
+def condition_of(words: Words) -> State | None:
+    """Return the condition of a rule, which may last or be counted, too: `aiming for 1 s`, `died 3 times`."""
+    holding = holding_of(words)
+    if holding is not None:
+        held = State(f"time_holding({holding[0].text}) {holding[1] or '>='} {holding[2]}")
+        # A time that is not yet over is also 0 while the condition does not hold.
+        return joined([holding[0], held], "and") if holding[1] in ("<", "<=") else held
+    count = count_of(words)
+    if count is not None:
+        return State(f"times({count[0].text}) {count[1] or '>='} {count[2]}")
+    parts = words.split(phrases("and"))
+    if len(parts) > 1 and not words.find([("between",), ("or",)]):
+        states = [condition_of(part) for part in parts]
+        known = [state for state in states if state is not None]
+        return joined(known, "and") if len(known) == len(states) else None
+    return state_of(words)
+
+
+def _scenario(words: Words) -> Clauses | None:
+    """Return the rule of a scenario: `given a when b then c`."""
+    if words.word(0) != "given":
+        return None
+    found = words.find(phrases("when"))
+    if found is None:
+        return None
+    then = words.find(phrases("then"), found[0])
+    if then is None:
+        return None
+    given, when = (condition_of(part) for part in (_steps(words[1 : found[0]]), _steps(words[found[0] + 1 : then[0]])))
+    answer = answer_of(_steps(words[then[0] + 1 :]))
+    if given is None or when is None or answer is None:
+        return None
+    return _answered(joined([given, when], "and"), answer, is_from_then=False)
+
+
+def _steps(words: Words) -> Words:
+    return words[:-1] if words and words[-1].text in (",", ".") else words
+
+
+def _implication(words: Words) -> Clauses | None:
+    """Return the rule of `keep a implies b within 5 s`, whose answer is in the words of English."""
+    parts = words.without([("keep",)]).split([("implies",), ("=", ">")])
+    if len(parts) != 2 or words.word(0) == "not" or parts[1].phrase(0, NEVER):
+        return None
+    event, answer = condition_of(parts[0].without([*SUBJECTS, *phrases("every", "each", "any")])), answer_of(parts[1])
+    return None if event is None or answer is None else (clause_of(event, answer),)
+
+
+def _condition_first(words: Words) -> Clauses | None:
+    """Return the rule of a sentence that begins with its condition: `when a, b`, `once a, never b`."""
+    phrase = words.phrase(0, [*SAME_STEP, *FROM_THEN])
+    if not phrase:
+        return _unless_first(words)
+    for start, stop in _borders(words, len(phrase)):
+        event, answer = condition_of(words[len(phrase) : start]), answer_of(words[stop:])
+        if event is not None and answer is not None:
+            return _answered(event, answer, is_from_then=phrase in FROM_THEN)
+    return None
+
+
+def _unless_first(words: Words) -> Clauses | None:
+    """Return the rule of `unless a, never b`."""
+    phrase = words.phrase(0, UNLESS)
+    for start, stop in _borders(words, len(phrase)) if phrase else ():
+        condition, prohibited = condition_of(words[len(phrase) : start]), _prohibited(words[stop:])
+        if condition is not None and prohibited is not None:
+            return (f"keep {prohibited.at(OR)} implies {condition.at(OR)}",)
+    return None
+
+
+def _borders(words: Words, first: int) -> list[tuple[int, int]]:
+    """Return where the condition at the beginning of a sentence may end, and what is asked for may begin."""
+    border = words.find(phrases(",", "then", ", then", ":", "=>", "->", "implies"), first)
+    if border is not None:
+        return [(border[0], border[0] + len(border[1]))]
+    after_name = next((at + 1 for at in range(first, len(words)) if words[at].is_name), len(words))
+    if after_name < len(words) and words[after_name].text == "(":
+        after_name = next((at + 1 for at in range(after_name, len(words)) if words[at].text == ")"), len(words))
+    return [(after_name, after_name)] if after_name < len(words) else []
+
+
+def _answered(event: State, answer: Answer, *, is_from_then: bool) -> Clauses | None:
+    """Return the rule that asks for an answer, if the kind of the condition leaves one reading."""
+    if answer.state in (event, event.negated()):
+        return None  # an event that answers itself begins again
+    if is_from_then and answer.kind == "now":
+        return None  # at that step, or from then on
+    if not is_from_then and answer.kind == "always":
+        return None  # always while the condition holds, or from then on
+    return (clause_of(event, answer),)
+
+
+def _condition_last(words: Words) -> Clauses | None:
+    """Return the rule of a sentence that ends with its condition: `a only if b`, `b within 5 s after a`."""
+    words = words.without(SUBJECTS)
+    for known, read in (
+        (ONLY_AFTER, _only_after),
+        (ONLY_WHEN, _only_when),
+        (UNLESS, _unless),
+        (phrases("iff", "if and only if", "exactly when", "exactly if"), _exactly_when),
+        (UNTIL, _until),
+        ((*SAME_STEP, *FROM_THEN, ("of",)), _whenever),
+    ):
+        found = words.find_last(known)
+        if found is None or not found[0] or words.time(found[0] + len(found[1])):
+            continue
+        left, right = words[: found[0]], condition_of(words[found[0] + len(found[1]) :])
+        clauses = None if right is None else read(left, right, found[1])
+        if clauses is not None:
+            return clauses
+    return None
+
+
+def _subject(words: Words) -> State | None:
+    """Return what a rule is about, without words such as `must` and `keep` around it."""
+    words = words.without([*SUBJECTS, *MODALS, ("keep",)])
+    end = words.find_last([*MODALS, *((*modal, "be") for modal in MODALS), *phrases("can", "may", "can be", "may be")])
+    if end is not None and end[0] and end[0] + len(end[1]) == len(words):
+        words = words[: end[0]]
+    return state_of(words)
+
+
+def _only_after(left: Words, right: State, phrase: tuple[str, ...]) -> Clauses | None:
+    state = _subject(left)
+    return None if state is None else (f"keep {state.at(OR)} implies once {right.at(ATOM)}",)
+
+
+def _only_when(left: Words, right: State, phrase: tuple[str, ...]) -> Clauses | None:
+    state = _subject(left)
+    return None if state is None else (f"keep {state.at(OR)} implies {right.at(OR)}",)
+
+
+def _unless(left: Words, right: State, phrase: tuple[str, ...]) -> Clauses | None:
+    prohibited = _prohibited(left)
+    if prohibited is not None:
+        return (f"keep {prohibited.at(OR)} implies {right.at(OR)}",)
+    state = _subject(left)
+    return None if state is None or not _is_rule(left) else (f"keep {state.at(OR)} or {right.at(OR)}",)
+
+
+def _exactly_when(left: Words, right: State, phrase: tuple[str, ...]) -> Clauses | None:
+    state = _subject(left)
+    return None if state is None else (f"keep {state.at(OR)} iff {right.at(OR)}",)
+
+
+def _until(left: Words, right: State, phrase: tuple[str, ...]) -> Clauses | None:
+    """Return the rule of `no a until b`; `a until b` has two readings, as b may have to come or not."""
+    prohibited = _prohibited(left)
+    if prohibited is None or (left.word(0) in ("avoid", "forbid", "prevent") and phrase != ("before",)):
+        return None
+    return (f"require {prohibited.negated().at(ATOM)} weak_until {right.at(ATOM)}",)
+
+
+def _whenever(left: Words, right: State, phrase: tuple[str, ...]) -> Clauses | None:
+    """Return the rule of `b if a`, `never b while a`, `b within 5 s after a`."""
+    is_from_then = phrase in FROM_THEN or phrase == ("of",)
+    prohibited = _prohibited(left)
+    if prohibited is not None:
+        answer = Answer("always" if is_from_then else "now", prohibited.negated())
+        return None if phrase == ("of",) else _answered(right, answer, is_from_then=is_from_then)
+    if left.word(0) in ("reach", "avoid", "require"):
+        return None
+    found = answer_of(left)
+    if found is None or (phrase == ("of",) and found.kind != "within"):
+        return None
+    return _answered(right, found, is_from_then=is_from_then)
+
+
+def _prohibited(words: Words) -> State | None:
+    """Return what a sentence forbids: `never a`, `a must not happen`, `no a allowed`."""
+    words = words.without(SUBJECTS)
+    phrase = words.phrase(0, PROHIBITIONS)
+    if phrase and (phrase != ("no",) or words.find_last([("no",)]) == (0, phrase)):
+        rest = words[len(phrase) :]
+        end = rest.find(phrases("allowed", "permitted", "ever", "at all", "at any time", "at any point"))
+        if end is not None and end[0] and end[0] + len(end[1]) == len(rest):
+            rest = rest[: end[0]]
+        holding = holding_of(rest)
+        if holding is not None and holding[1] not in (">", ">="):
+            return None  # it may not hold all that time, or not at any step of it
+        state = condition_of(rest)
+        # `never a or b` may go on with another rule.
+        return state if state is None or state.level == ATOM or rest.find_last(AT_ONCE) else None
+    found = words.find([*PROHIBITIONS, *((*verb, *word) for verb in phrases("is", "are") for word in phrases("never"))])
+    if found is None or not found[0]:
+        return None
+    rest = words[found[0] + len(found[1]) :]
+    verb = rest.phrase(0, [*COPULAS, *AT_ONCE, *phrases("occur", "be allowed", "be true", "allowed", "permitted")])
+    if found[1] == ("no",):
+        return None
+    if len(verb) == len(rest):
+        return state_of(words[: found[0]])
+    # `health never drops below 20`: the comparison after `never` is what is forbidden.
+    left = words[: found[0]].without([*SUBJECTS, ("keep",)])
+    copula = left[-1:].phrase(0, COPULAS)
+    left = left[: len(left) - len(copula)]
+    return state_of(left.followed_by(rest.without(COPULAS))) if is_value(left) else None
+
+
+def _is_rule(words: Words) -> bool:
+    """Whether words say that they are a rule, as `keep` does, and `must` or `always` after what they are about."""
+    words = words.without(SUBJECTS)
+    found = words.find([*MODALS, *ALWAYS])
+    return words.word(0) in ("keep", "ensure") or (found is not None and found[0] > 0)
+
+
+def _unconditional(words: Words) -> Clauses | None:
+    """Return a rule about every step: a prohibition, a bound of a count, of a time or of a value."""
+    words = words.without(SUBJECTS)
+    for limited in (_bounded_count(words), _bounded_time(words)):
+        if limited is not None:
+            return limited
+    prohibited = _prohibited(words)
+    if prohibited is not None:
+        return (f"avoid {prohibited.text}",)
+    return _kept(words)
+
+
+def _bounded_count(words: Words) -> Clauses | None:
+    """Return the rule of `died at most 3 times`, `avoid died more than 3 times`, `exactly 1 takedown`."""
+    keyword = words.phrase(0, [*PROHIBITIONS, *MODALS, ("keep",), ("reach",)])
+    is_forbidden = keyword in PROHIBITIONS
+    rest = words[len(keyword) :]
+    count = count_of(rest) or count_of(rest.without([*SUBJECTS, *COPULAS]))
+    if count is None:
+        middle = words.find([*NEVER, *MODALS])
+        if middle is None or not middle[0] or not is_event(words[: middle[0]]):
+            return None
+        is_forbidden = middle[1] in NEVER
+        after = words[middle[0] + len(middle[1]) :].without(COPULAS)
+        phrase = after.phrase(0, COMPARISONS)
+        number = after.number(len(phrase))
+        if not phrase or not number or after.word(len(phrase) + 1) not in ("time", "times"):
+            return None
+        count = (State(words[: middle[0]].text), COMPARISONS[phrase], number)
+    (event, sign, number) = count
+    if is_forbidden:
+        sign = NEGATED_SIGN.get(sign or ">=", "")
+    if sign in ("<=", "<"):
+        is_zero = (sign, number) in (("<=", "0"), ("<", "1"))
+        return (f"avoid {event.text}",) if is_zero else (f"keep times({event.text}) {sign} {number}",)
+    if sign in (">=", ">"):
+        return (f"reach times({event.text}) {sign} {number}",)
+    if number == "0" and sign in ("", "=="):
+        return (f"avoid {event.text}",)
+    if sign == "==":
+        return f"reach times({event.text}) >= {number}", f"keep times({event.text}) <= {number}"
+    return None
+
+
+def _bounded_time(words: Words) -> Clauses | None:
+    """Return the rule of `dashing for at most 0.5 s`, `avoid off_track for longer than 2 s`."""
+    keyword = words.phrase(0, [*PROHIBITIONS, *MODALS, ("keep",)])
+    is_forbidden = keyword in PROHIBITIONS
+    holding = holding_of(words[len(keyword) :])
+    if holding is None:
+        return None
+    state, sign, time = holding
+    sign = NEGATED_SIGN.get(sign, "") if is_forbidden else sign
+    return (f"keep time_holding({state.text}) {sign} {time}",) if sign in ("<", "<=") else None
+
+
+def _kept(words: Words) -> Clauses | None:
+    """Return the rule of `a must always hold`, `keep a between 3 and 5`, `all guards must be asleep`."""
+    if not _is_rule(words):
+        return None
+    words = words.without([*MODALS, ("keep",), ("ensure",)])
+    if words.word(0) == "that":
+        words = words[1:]
+    for known in ((*((*modal, *word) for modal in MODALS for word in ALWAYS), *MODALS), ALWAYS):
+        found = words.find_last(known)
+        if found is not None:
+            words = words[: found[0]].followed_by(words[found[0] + len(found[1]) :])
+    state = state_of(words)
+    # `keep a and b is not true` has several readings.
+    is_one = state is not None and (state.level in (ATOM, RULE) or words.find([("between",)]))
+    return (f"keep {state.text}",) if state is not None and is_one else None
