@@ -16,6 +16,7 @@ from tltlc.automaton.fspa import Fspa
 from tltlc.core.source import SourceFile
 from tltlc.pipeline import CompileOptions, compile_source
 from tltlc.tools.diff.relation import compare
+from tltlc.tools.mine.columns import ColumnKind
 from tltlc.tools.mine.confirm import confirm
 from tltlc.tools.mine.evidence import Evidence
 from tltlc.tools.mine.search import MiningOptions, SpecSearch
@@ -76,7 +77,7 @@ def _ours(evidence_: Evidence, planted_fspa: Fspa, min_support: float) -> Record
     The rank is None if no proposal is equivalent to the planted spec.
     """
     start = time.perf_counter()
-    words = vocabulary_of_columns(dict.fromkeys(evidence_.atoms(), True))
+    words = vocabulary_of_columns(dict.fromkeys(evidence_.atoms(), ColumnKind.TRUTHS))
     search = SpecSearch(evidence_, MiningOptions(min_support=min_support))
     for _ in search.run():
         pass

@@ -3,6 +3,7 @@ from __future__ import annotations
 from hypothesis import strategies as st
 
 from tests.interfaces.cli.conftest import inside, process, tltlc
+from tltlc.tools.mine.columns import ColumnKind
 from tltlc.tools.mine.evidence import Evidence, LabelledTrace
 from tltlc.tools.mine.vocabulary import MiningVocabulary, vocabulary_of_columns
 
@@ -12,7 +13,7 @@ ATOMS = ("a", "b", "c")
 
 
 def vocabulary(atoms: tuple[str, ...] = ATOMS) -> MiningVocabulary:
-    return vocabulary_of_columns(dict.fromkeys(atoms, True))
+    return vocabulary_of_columns(dict.fromkeys(atoms, ColumnKind.TRUTHS))
 
 
 @st.composite
