@@ -9,13 +9,16 @@ import re
 import shutil
 import struct
 import subprocess
+from contextlib import nullcontext
 from pathlib import Path
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from tests.backends.failures import ROUNDS, failure_lines, guarded
 from tests.backends.monitors import FAR, Programs, batches, different, expected, trace_of
+from tests.backends.state_tables import counting, with_tables
 from tests.backends.strategies import hostile_automata
 from tests.backends.test_c import NAMES
 from tests.fixtures import cover_and_hide
@@ -25,6 +28,7 @@ from tests.waiting import HANG_S
 from tltlc import compile_text
 from tltlc.automaton.finite.build import build, spec_from_formula
 from tltlc.automaton.fspa import Fspa
+from tltlc.automaton.text import label_text
 from tltlc.backends import emit
 from tltlc.core.record import replace
 from tltlc.expression.tree import Const, Op, SignalValue
@@ -112,7 +116,7 @@ def test_public_names_are_in_pascal_case(tmp_path: Path) -> None:
     ]
     (signals,) = re.findall(r"public struct Signals\n(.*?)public static Signals", written, re.DOTALL)
     fields = ["DistanceBossDoor", "Room1_2", "Room12", "GuardMode", "Missing_1", "Missing_2"]
-    assert re.findall(r"public \w+ (\w+);", signals) == fields
+    assert re.findall(r"public [\w?]+ (\w+);", signals) == fields
     for path in tmp_path.iterdir():
         code = re.sub(r"//.*", "", path.read_text())
         names = {*re.findall(r"\b(?:public|protected|internal) [^;=({]*?(\w+)\s*(?=[;=({:])", code)}
@@ -202,6 +206,113 @@ def test_a_host_gets_results_notices_and_errors(tmp_path: Path) -> None:
         "0 0",
     ]
     assert run_program(tmp_path, "library.exe") == (0, "".join(f"{line}\n" for line in lines), "")
+
+
+FAILURES = r"""
+using System;
+using Monitor = Tltl.GuardedMonitor;
+
+internal static class Failures
+{
+    private static void Main(string[] rounds)
+    {
+        var monitor = new Monitor();
+        foreach (string letters in rounds)
+        {
+            foreach (char letter in letters)
+            {
+                var sample = Monitor.Signals.Sparse;
+                sample.Health = letter == 'h' || letter == 'b' ? 0.25 : 1.0;
+                if (letter == 's' || letter == 'b') sample.Seen = true;
+                if (letter == 'a') sample.Alarm = true;
+                // A sample that is refused changes nothing.
+                Monitor.Result result;
+                if (monitor.TryStep(Monitor.Signals.Sparse, out result)) throw new InvalidOperationException();
+                result = monitor.Step(sample);
+                Console.Write("{0}|{1}|", result.LabelEnglish, result.FailedClause);
+                Console.WriteLine("{0}|{1}", result.FailedAtom, result.FailedStep);
+            }
+            monitor.Reset();
+        }
+    }
+}
+"""
+
+
+@pytest.mark.parametrize("kept_in_tables", [False, True])
+def test_a_host_learns_what_a_trace_fails_at(kept_in_tables: bool, tmp_path: Path) -> None:
+    fspa = guarded()
+    with with_tables() if kept_in_tables else nullcontext():
+        assert ("LabelTexts" in write_monitor(fspa, tmp_path)) is kept_in_tables
+    (tmp_path / "failures.cs").write_text(FAILURES)
+    compile_program(tmp_path, "-out:failures.exe", "failures.cs", "GuardedMonitor.cs")
+    lines = [f"{line}\n" for line in failure_lines(fspa)]
+    assert run_program(tmp_path, "failures.exe", *ROUNDS) == (0, "".join(lines), "")
+
+
+def test_labels_of_counting_states_are_also_in_words(tmp_path: Path) -> None:
+    fspa = counting()
+    write_monitor(fspa, tmp_path)
+    sample = "new Tltl.QuietMonitor.Signals { Pit = i == 0 }"
+    step = f"System.Console.WriteLine(monitor.Step({sample}).LabelEnglish);"
+    code = f"var monitor = new Tltl.QuietMonitor(); for (int i = 0; i < 620; i++) {step}"
+    (tmp_path / "labels.cs").write_text(f"static class Labels {{ static void Main() {{ {code} }} }}")
+    compile_program(tmp_path, "-out:labels.exe", "labels.cs", "QuietMonitor.cs")
+    monitor = Monitor(fspa)
+    labels = [label_text(fspa, monitor.step({"pit": float(i == 0)}).state) for i in range(620)]
+    assert len(set(labels)) > 500
+    assert run_program(tmp_path, "labels.exe") == (0, "".join(f"{label}\n" for label in labels), "")
+
+
+FORGOTTEN = r"""
+using System;
+using Monitor = Tltl.GuardedMonitor;
+
+internal static class Forgotten
+{
+    private static void Main()
+    {
+        var monitor = new Monitor();
+        var sample = Monitor.Signals.Missing;
+        Tell(monitor, sample);
+        sample.Seen = false;
+        Tell(monitor, sample);
+        sample.Health = 1.0;
+        Tell(monitor, sample);
+        sample.Alarm = false;
+        // No clause needs it, but it is a signal.
+        Tell(monitor, sample);
+        sample.Open = true;
+        Tell(monitor, sample);
+        Tell(monitor, new Monitor.Signals { Health = 1.0 });
+        sample = Monitor.Signals.Sparse;
+        Tell(monitor, sample);
+        sample.Health = 1.0;
+        Tell(monitor, sample);
+        sample.Seen = true;
+        Tell(monitor, sample);
+    }
+
+    private static void Tell(Monitor monitor, Monitor.Signals sample)
+    {
+        Monitor.Result result;
+        bool taken = monitor.TryStep(sample, out result);
+        Console.WriteLine("{0} {1}", monitor.LastProblem, taken ? result.Verdict.ToString() : monitor.Message());
+    }
+}
+"""
+
+
+def test_a_forgotten_signal_is_refused_unless_it_is_a_bool_of_a_sparse_sample(tmp_path: Path) -> None:
+    write_monitor(guarded(), tmp_path)
+    (tmp_path / "forgotten.cs").write_text(FORGOTTEN)
+    compile_program(tmp_path, "-out:forgotten.exe", "forgotten.cs", "GuardedMonitor.cs")
+    first = [
+        f"NotFinite step 1: no finite number for the signal `{name}`" for name in ("seen", "health", "alarm", "open")
+    ]
+    second = [f"NotFinite step 2: no finite number for the signal `{name}`" for name in ("seen", "health")]
+    lines = [*first, "None Holding", *second, "None Holding", "None Violated"]
+    assert run_program(tmp_path, "forgotten.exe") == (0, "".join(f"{line}\n" for line in lines), "")
 
 
 UNITY = r"""
@@ -331,6 +442,7 @@ internal sealed class Game : Tltl.HurryMonitorBehaviour
         var game = new Game();
         game.OnDone.AddListener(() => System.Console.WriteLine("done"));
         game.StepInFixedUpdate = true;
+        game.Sparse = true;
         game.OnEnable();
         System.Console.WriteLine(game.Step(-0.25) + " " + game.Step(double.NaN));
         game.Signals.X = 0.0;

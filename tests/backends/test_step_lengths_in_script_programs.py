@@ -40,9 +40,10 @@ def rows(fspa: Fspa, samples: Sequence[Row]) -> str:
         step = monitor.step(signals, length)
         flags = ["true" if flag else "false" for flag in (step.accepting, step.done)]
         figures = [f"{value:.17g}" for value in (step.progress, step.reward, step.robustness)]
-        limiting = step.limiting or ""
+        texts = (step.limiting, step.failed_clause, step.failed_atom, step.failed_step)
+        names = ["" if text is None else str(text) for text in texts]
         cells = [str(monitor.steps), str(step.state), step.verdict, *flags, *figures]
-        lines.append(",".join([*cells, f'"{limiting}"' if "," in limiting else limiting]))
+        lines.append(",".join([*cells, *(f'"{name}"' if "," in name else name for name in names)]))
     return "\n".join(lines) + "\n"
 
 

@@ -10,7 +10,7 @@ import pytest
 
 from benchmarks import engine_report
 from benchmarks.engine_speed import disagreement, monitor_rows
-from benchmarks.engines.engine import Engine, engines, generate, write_trace
+from benchmarks.engines.engine import OUTPUT_FIELDS, Engine, engines, generate, write_trace
 from benchmarks.specs import PAPER_SPECS, source, trace
 from benchmarks.store import Store
 from tests.benchmarks.test_handwritten import _shuffled
@@ -47,7 +47,8 @@ def _expected(spec: str, walks: list[list[dict[str, float]]]) -> tuple[list[tupl
     rows: list[tuple[str, ...]] = []
     for walk in walks:
         monitor.reset()
-        rows += [tuple(map(_cell, monitor.step(sample))) for sample in walk]
+        steps = [monitor.step(sample) for sample in walk]
+        rows += [tuple(_cell(getattr(step, field)) for field in OUTPUT_FIELDS) for step in steps]
     return rows, {row[2] for row in rows}
 
 

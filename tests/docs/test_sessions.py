@@ -45,7 +45,7 @@ def test_the_guide_to_automata_of_other_tools_runs(tmp_path: Path) -> None:
         ("unreal", "g++", 5),
         ("web", "node", 5),
         ("love", "lua5.4", 6),
-        ("unity", "mcs", 5),
+        ("unity", "mcs", 6),
         ("rust", "rustc", 5),
         ("godot", "godot3-server", 5),
     ],

@@ -14,6 +14,7 @@ from collections.abc import Sequence
 
 from tltlc.automaton.finite.blowup import recursion_room
 from tltlc.automaton.fspa import Fspa
+from tltlc.automaton.text import label_text
 from tltlc.backends import Files, Options, Target
 from tltlc.backends.languages.csharp_syntax import KEYWORDS, CSharpPrinter, string_literal, summary_comment, table_name
 from tltlc.backends.templates import fill_template, names_in
@@ -22,6 +23,7 @@ from tltlc.program import reward_step, snippets, states
 from tltlc.program.arithmetic import with_declaration
 from tltlc.program.build import program
 from tltlc.program.enums import nested_enums, pascal_case
+from tltlc.program.label_texts import LabelTexts
 from tltlc.program.names import VariableNames
 from tltlc.program.printer import CHOICE, Printer
 from tltlc.program.shapes import StateTables
@@ -76,7 +78,7 @@ class _Source(StepCode):
     def __init__(self, fspa: Fspa) -> None:
         super().__init__(program(fspa, [*KEYWORDS, *_TEMPLATE], has_bools=True))
         self._type = _type_name(fspa)
-        self._signal_fields = _field_names([signal.name for signal in fspa.signals], "Signals", "Missing")
+        self._signal_fields = _field_names([signal.name for signal in fspa.signals], "Signals", "Missing", "Sparse")
         self._param_fields = _field_names([param.name for param in fspa.params], "Params", "Defaults")
         self._printer = CSharpPrinter()
 
@@ -91,6 +93,7 @@ class _Source(StepCode):
             *functions_called(statement for case in program_.cases for statement in case.statements),
         ]
         present += ["note"] if program_.functions & FAILING else []
+        present += ["fails"] if any(state.verdict == "violated" for state in fspa.states) else []
         present += [] if all(program_.always_in_range) else ["keep"]
         present += ["inlined"] if {"divide", "min", "max"} & {*present} else []
         with recursion_room():
@@ -111,8 +114,11 @@ class _Source(StepCode):
             "at_fault": 'Computed() + "' if fspa.registers else '"the atom `" + AtomNames[_which] + "`',
             "largest_group": str(max(map(len, fspa.exclusive), default=0)),
             "groups": _list([f"new[] {{{', '.join(map(str, group))}}}" for group in fspa.exclusive]),
-            "signal_defaults": CSharpPrinter.block(
+            "missing_numbers": CSharpPrinter.block(
                 [f"none.{name} = double.NaN;" for signal, name in signals if signal.type != "bool"], 5
+            ),
+            "false_bools": CSharpPrinter.block(
+                [f"none.{name} = false;" for signal, name in signals if signal.type == "bool"], 5
             ),
             "param_defaults": CSharpPrinter.block(
                 [f"own.{name} = {snippets.number_literal(param.value)};" for param, name in params], 5
@@ -120,6 +126,7 @@ class _Source(StepCode):
             "param_checks": CSharpPrinter.block(
                 [line for param, name in params for line in _param_check(param, name)], 3
             ),
+            **self._failures(),
             "states": CSharpPrinter.block(self._states(), 3),
             **self._state_tables(program_.tables),
             "step": step,
@@ -152,14 +159,21 @@ class _Source(StepCode):
             lines += [*CSharpPrinter.block(constants[1:], 1).split("\n"), "}", ""]
         return lines
 
+    def _failures(self) -> dict[str, str]:
+        """Return the pieces of the template about what a step can fail at."""
+        clauses, atoms = zip(*snippets.failure_texts(self._program), (None, None), strict=True)
+        return {
+            "failed_clauses": _list(["null" if text is None else string_literal(text) for text in clauses]),
+            "failed_atoms": _list(["null" if text is None else string_literal(text) for text in atoms]),
+            "failure": states.FAILURE if self._program.failures else "0",
+        }
+
     def _states(self) -> list[str]:
         """Return a row for each state or, if there are tables, for each kind of states."""
-        tables = self._program.tables
         lines: list[str] = []
         for index in self._program.state_rows:
             state = self._fspa.states[index]
             values = (
-                string_literal(str(state.label) if tables is None else ""),
                 f"Verdict.{state.verdict.capitalize()}",
                 snippets.boolean_literal(state.accepting),
                 snippets.boolean_literal(self._program.ends[index]),
@@ -168,16 +182,26 @@ class _Source(StepCode):
         return lines
 
     def _state_tables(self, tables: StateTables | None) -> dict[str, str]:
-        """Return the pieces of the template with the tables of states; they are empty if there are none."""
+        """Return the pieces of the template with the tables of states or, if there are none, with their labels."""
         if tables is None:
-            return {"tables": "", "label_texts": ""}
+            return {
+                "labels": _list([string_literal(str(state.label)) for state in self._fspa.states]),
+                "english_labels": _list(
+                    [string_literal(label_text(self._fspa, state.id)) for state in self._fspa.states]
+                ),
+            }
         lines: list[str] = []
+        read_in_steps = tables.step_tables(self._fspa.judge)
         for name, numbers in tables.all_tables(self._fspa.judge).items():
-            type_ = "double" if name == "level_progress" else "ushort" if max(numbers, default=0) < 1 << 16 else "int"
+            is_short = name in read_in_steps and max(numbers, default=0) < 1 << 16
+            type_ = "double" if name == "level_progress" else "ushort" if is_short else "int"
             items = _list([*map(repr, numbers)])
             lines.append(f"{_INDENT * 2}private static readonly {type_}[] {table_name(name)} = {{{items}}};")
-        texts = [f"new[] {{{', '.join(map(string_literal, pieces))}}}" for pieces in tables.labels.texts]
-        return {"tables": "\n".join(lines), "label_texts": _list(texts)}
+        return {
+            "tables": "\n".join(lines),
+            "label_texts": _label_texts(tables.labels),
+            "english_texts": _label_texts(tables.labels_english),
+        }
 
     def _give(self) -> list[str]:
         """Return the body of a generated function that sets one signal, given its index: a case for each signal."""
@@ -202,6 +226,7 @@ class _Source(StepCode):
         signals = zip(self._fspa.signals, self._program.signals, self._signal_fields, strict=True)
         for index, (signal, name, field) in enumerate(signals):
             if signal.type == "bool":
+                lines.append(f"if (!sample.{field}.HasValue) return Refuse(Problem.NotFinite, {index}, out result);")
                 continue
             low, high = (
                 snippets.number_literal(signal.low, "double.NegativeInfinity"),
@@ -232,9 +257,9 @@ class _Source(StepCode):
         """
         fields = dict(zip(self._program.signals, self._signal_fields, strict=True))
         return [
-            f"bool {name} = sample.{fields[name]};"
+            f"bool {name} = sample.{fields[name]}.GetValueOrDefault();"
             if name in self._program.booleans
-            else f"double {name} = sample.{fields[name]} ? 1.0 : 0.0;"
+            else f"double {name} = sample.{fields[name]}.GetValueOrDefault() ? 1.0 : 0.0;"
             for name in self._program.bools_read_in(case)
         ]
 
@@ -276,6 +301,7 @@ class _Source(StepCode):
         lines = [f"int {states.TARGET} = _state;", f"int {states.LIMITING} = -1;"]
         lines.append(f"double {states.ROBUSTNESS} = 0.0;")
         lines += [f"double {states.PROGRESS} = 0.0;"] if self._fspa.judge == "goal" else []
+        lines += [f"int {states.FAILURE} = -1;"] if self._program.failures else []
         has_tables = self._program.tables is not None
         lines += [f"int {states.FIRST_EDGE} = FirstEdges[_state];"] if has_tables else []
         lines += ["switch (StateShapes[_state])" if has_tables else "switch (_state)", "{"]
@@ -319,12 +345,13 @@ def _type_name(fspa: Fspa) -> str:
     return TARGET.file_names(fspa.name)[0].removesuffix(".cs")
 
 
-def _field_names(names: Sequence[str], struct: str, property_: str) -> list[str]:
+def _field_names(names: Sequence[str], struct: str, *properties: str) -> list[str]:
     """Return the names of the fields of a struct, in Pascal case.
 
-    ``names`` are their names in the spec, ``struct`` is the name of the struct, and ``property_`` that of its property.
+    ``names`` are their names in the spec, ``struct`` is the name of the struct, and ``properties`` those of its
+    properties.
     """
-    field_names = VariableNames((struct, property_, *_OBJECT_MEMBERS))
+    field_names = VariableNames((struct, *properties, *_OBJECT_MEMBERS))
     return [field_names.new_name(name, spell=pascal_case) for name in names]
 
 
@@ -340,7 +367,7 @@ def _check_lines(test: str, otherwise: str) -> list[str]:
 
 
 def _type(signal: Signal) -> str:
-    return "bool" if signal.type == "bool" else "double"
+    return "bool?" if signal.type == "bool" else "double"
 
 
 def _fields(fields: Sequence[tuple[str, str, Signal | Param]]) -> str:
@@ -357,6 +384,10 @@ def _param_check(param: Param, name: str) -> list[str]:
     parts = [f"the param `{param.name}` cannot be ", f": its range is {range_text(param.low, param.high)}"]
     message = f" + Shown(given.{name}) + ".join(map(string_literal, parts))
     return [f"if (!({' && '.join(tests)}))", "{", f"{_INDENT}throw new ArgumentException({message});", "}"]
+
+
+def _label_texts(labels: LabelTexts) -> str:
+    return _list([f"new[] {{{', '.join(map(string_literal, pieces))}}}" for pieces in labels.texts])
 
 
 def _list(items: Sequence[str]) -> str:

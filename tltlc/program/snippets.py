@@ -65,6 +65,15 @@ def common_blocks(program_: Program) -> list[str]:
     ]
 
 
+def failure_texts(program_: Program) -> list[tuple[str | None, str | None]]:
+    """Return the clause and the atom of what a step can fail at, in the order of ``program_.failures``."""
+    fspa = program_.fspa
+    return [
+        (None if clause is None else fspa.clauses[clause], None if atom is None else fspa.atoms[atom].name)
+        for clause, atom in program_.failures
+    ]
+
+
 def example_sample(signals: Sequence[Signal], key: Callable[[str], str], equals: str) -> str:
     """Return an example of a sample for a comment: ``{ health: …, seen: true }``.
 
