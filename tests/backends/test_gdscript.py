@@ -16,6 +16,7 @@ import shutil
 import struct
 import subprocess
 from collections.abc import Sequence
+from contextlib import nullcontext
 from decimal import Decimal, localcontext
 from pathlib import Path
 
@@ -23,7 +24,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from tests.backends.failures import ROUNDS, failure_lines, guarded
 from tests.backends.monitors import Programs, Sample, batches, different, expected, one_atom, trace_of
+from tests.backends.state_tables import counting, with_tables
 from tests.backends.strategies import HOSTILE, hostile_automata
 from tests.fixtures import cover_and_hide
 from tests.monitor.strategies import PARAMS, SIGNALS, atom_traces, automata, expressions, numbers
@@ -34,6 +37,7 @@ from tltlc import compile_text
 from tltlc.automaton.finite.blowup import recursion_room
 from tltlc.automaton.finite.build import build, spec_from_formula
 from tltlc.automaton.fspa import Fspa
+from tltlc.automaton.text import label_text
 from tltlc.backends import emit, gdscript, gdscript3
 from tltlc.backends.godot import source
 from tltlc.backends.godot.names import RESERVED, snake_case
@@ -421,3 +425,105 @@ def test_a_host_gets_results_notices_and_errors(tmp_path: Path) -> None:
     status, out, err = run(tmp_path, "library.gd")
     lines = [wrong, wrong.replace("be 1", "be nan"), "True|0|", *rows, *rows, notice]
     assert (status, out.splitlines()) == (0, lines), err
+
+
+FAILURES = """extends SceneTree
+
+const Monitor = preload("guarded_monitor.gd")
+
+
+func _init():
+	var monitor = Monitor.new()
+	var sample = Monitor.Sample.new()
+	for letters in ROUNDS:
+		for letter in letters:
+			sample.sparse()
+			# A sample that is refused changes nothing.
+			print(monitor.step(sample))
+			sample.health = 0.25 if letter in "hb" else 1.0
+			if letter in "sb":
+				sample.seen = true
+			if letter == "a":
+				sample.alarm = true
+			monitor.step(sample)
+			var failed = [monitor.failed_clause(), monitor.failed_atom(), monitor.failed_step]
+			print(monitor.label_english(), "|%s|%s|%s" % failed)
+			# What a game keeps of a monitor is enough to go on with another one.
+			var other = Monitor.new()
+			for member in ["state", "verdict", "steps", "failed_step", "failure"]:
+				other.set(member, monitor.get(member))
+			monitor = other
+		monitor.reset()
+	quit()
+"""
+
+
+@runs
+@pytest.mark.parametrize("kept_in_tables", [False, True])
+def test_a_host_learns_what_a_trace_fails_at(kept_in_tables: bool, tmp_path: Path) -> None:
+    fspa = guarded()
+    with with_tables() if kept_in_tables else nullcontext():
+        write(tmp_path, fspa)
+    assert ("_LABEL_TEXTS" in (tmp_path / "guarded_monitor.gd").read_text()) is kept_in_tables
+    (tmp_path / "failures.gd").write_text(FAILURES.replace("ROUNDS", str(list(ROUNDS))))
+    status, out, err = run(tmp_path, "failures.gd")
+    lines = [line for step in failure_lines(fspa, no_step="0") for line in ("False", step)]
+    assert (status, out.splitlines()) == (0, lines), err
+
+
+@runs
+def test_labels_of_counting_states_are_also_in_words(tmp_path: Path) -> None:
+    fspa = counting()
+    write(tmp_path, fspa)
+    head = 'extends SceneTree\nfunc _init():\n\tvar kind = preload("quiet_monitor.gd")\n'
+    (tmp_path / "labels.gd").write_text(
+        f"{head}\tfor i in range(602):\n\t\tprint(kind.label_english_of(i))\n\tquit()\n"
+    )
+    status, out, err = run(tmp_path, "labels.gd")
+    assert (status, out.splitlines()) == (0, [label_text(fspa, state.id) for state in fspa.states]), err
+
+
+FORGOTTEN = """extends SceneTree
+
+const Monitor = preload("guarded_monitor.gd")
+
+var monitor = Monitor.new()
+
+
+func told(sample):
+	print(Monitor.Verdict.keys()[monitor.verdict] if monitor.step(sample) else monitor.message())
+
+
+func _init():
+	var sample = Monitor.Sample.new()
+	told(sample)
+	sample.seen = false
+	told(sample)
+	sample.health = 1.0
+	told(sample)
+	sample.alarm = false
+	# No clause needs it, but it is a signal.
+	told(sample)
+	sample.open = true
+	told(sample)
+	sample.clear()
+	sample.health = 1.0
+	told(sample)
+	sample.sparse()
+	told(sample)
+	sample.health = 1.0
+	told(sample)
+	sample.seen = true
+	told(sample)
+	quit()
+"""
+
+
+@runs
+def test_a_forgotten_signal_is_refused_unless_it_is_a_bool_of_a_sparse_sample(tmp_path: Path) -> None:
+    write(tmp_path, guarded())
+    (tmp_path / "forgotten.gd").write_text(FORGOTTEN)
+    first = [f"step 1: no finite number for the signal `{name}`" for name in ("seen", "health", "alarm", "open")]
+    second = [f"step 2: no finite number for the signal `{name}`" for name in ("seen", "health")]
+    status, out, err = run(tmp_path, "forgotten.gd")
+    assert (status, out.splitlines()) == (0, [*first, "HOLDING", *second, "HOLDING", "VIOLATED"]), err

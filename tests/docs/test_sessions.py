@@ -47,7 +47,7 @@ def test_the_guide_to_automata_of_other_tools_runs(tmp_path: Path) -> None:
         ("love", "lua5.4", 6),
         ("unity", "mcs", 6),
         ("rust", "rustc", 5),
-        ("godot", "godot3-server", 5),
+        ("godot", "godot3-server", 6),
     ],
 )
 def test_the_guides_to_engines_run(page: str, tool: str, commands: int, tmp_path: Path) -> None:

@@ -47,7 +47,7 @@ _OBJECT: Final = """
 _OWN: Final = """
     sample clear given params values notices noticed which problem verdict accepting limiting limiting_atom label
     message step steps begin reset state progress done reward robustness reached ends best target
-    state_shape label_of
+    state_shape label_of label_english label_english_of sparse failure failed_step failed_clause failed_atom
 """.split()
 """Names of variables in the template that do not begin with ``_``.
 

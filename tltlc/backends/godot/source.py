@@ -13,17 +13,19 @@ from typing import Final
 
 from tltlc.automaton.finite.blowup import recursion_room
 from tltlc.automaton.fspa import Fspa
+from tltlc.automaton.text import label_text
 from tltlc.backends import Files
 from tltlc.backends.godot.dialect import Dialect
 from tltlc.backends.godot.names import RESERVED, snake_case
 from tltlc.backends.godot.numbers import signed_number
-from tltlc.backends.godot.printer import Gd
+from tltlc.backends.godot.printer import Gd, with_failed_step
 from tltlc.backends.templates import fill_template, names_in
 from tltlc.monitor.samples import range_text
 from tltlc.program import reward_step, snippets, states
 from tltlc.program.arithmetic import with_declaration
 from tltlc.program.build import DT, program
 from tltlc.program.enums import nested_enums, upper_case
+from tltlc.program.label_texts import LabelTexts
 from tltlc.program.printer import CHOICE
 from tltlc.program.shapes import StateTables
 from tltlc.program.step_code import StepCode
@@ -43,6 +45,7 @@ _MEMBERS = {
     states.TARGET: "state",
     states.ROBUSTNESS: "robustness",
     states.LIMITING: "limiting",
+    states.FAILURE: "failure",
     states.PROGRESS: "reached",
     reward_step.BEST: "progress",
     reward_step.REWARD: "reward",
@@ -95,6 +98,7 @@ class _Source(StepCode):
         present += [] if all(program_.always_in_range) else ["atom"]
         present += ["number"] if any(signal.type != "bool" for signal in fspa.signals) else []
         present += ["params"] if fspa.params else []
+        present += ["failures"] if program_.failures else []
         with recursion_room():
             step = Gd.block(self._step())
         present += [name for name in ("min", "max") if f"_{name}(" in step]
@@ -112,6 +116,8 @@ class _Source(StepCode):
             "registers": self._strings(register.name for register in fspa.registers),
             "register_starts": _list([signed_number(register.initial) for register in fspa.registers]),
             "labels": self._strings(str(state.label) for state in fspa.states),
+            "labels_english": self._strings(label_text(fspa, state.id) for state in fspa.states),
+            **self._failures(),
             "verdicts": _list([f"Verdict.{state.verdict.upper()}" for state in fspa.states]),
             "first_verdict": f"Verdict.{first.verdict.upper()}",
             "first_accepting": snippets.boolean_literal(first.accepting),
@@ -122,15 +128,12 @@ class _Source(StepCode):
             "params": self._strings(param.name for param in fspa.params),
             "param_ranges": self._strings(range_text(param.low, param.high) for param in fspa.params),
             "sample_fields": self._sample_fields(),
-            "sample_start": Gd.block(
-                [f"{name} = {_start(signal)}" for signal, name in zip(fspa.signals, self._signals, strict=True)]
-                or ["pass"],
-                depth=2,
-            ),
+            "sample_start": self._assignments("null"),
+            "sample_sparse": self._assignments("false"),
             "param_fields": self._param_fields(),
             "param_checks": Gd.block(line for index in range(len(fspa.params)) for line in self._param_check(index)),
             "param_copies": Gd.block([f"_params.{name} = given.{name}" for name in self._params]),
-            "sample": "sample" if program_.reads_sample else "_sample",
+            "sample": "sample" if fspa.signals else "_sample",
             "dt": f", {DT}: float" if fspa.clock_varies else "",
             "and_delta": ", delta" if fspa.clock_varies else "",
             "wrong_length": ", WRONG_LENGTH" if fspa.clock_varies else "",
@@ -150,14 +153,26 @@ class _Source(StepCode):
             lines += ["", *comments, f"enum {enum.type} {{ {', '.join(enum.constants)} }}"]
         return lines
 
+    def _failures(self) -> dict[str, str]:
+        """Return the pieces of the template about what a step can fail at."""
+        failures = snippets.failure_texts(self._program)
+        return {
+            "failed_clauses": self._strings(clause or "" for clause, _ in failures),
+            "failed_atoms": self._strings(atom or "" for _, atom in failures),
+            "failed_clause": '"" if failure < 0 else FAILED_CLAUSES[failure]' if failures else '""',
+            "failed_atom": '"" if failure < 0 else FAILED_ATOMS[failure]' if failures else '""',
+        }
+
     def _tables(self, tables: StateTables | None) -> dict[str, str]:
         """Return the pieces of the template with the tables of states; they are empty if there are none.
 
         The script has the verdict of each state instead of the state's kind.
         """
         if tables is None:
-            return {"tables": "", "label_texts": ""}
-        columns = {**tables.all_tables(self._fspa.judge), "first_numbers": tables.labels.first_numbers}
+            return {"tables": "", "label_texts": "", "english_texts": ""}
+        columns = tables.all_tables(self._fspa.judge)
+        columns["first_numbers"] = tables.labels.first_numbers
+        columns["english_first"] = tables.labels_english.first_numbers
         del columns["state_kinds"]
         types, lines = self._dialect.types(), []
         for name, numbers in columns.items():
@@ -166,9 +181,8 @@ class _Source(StepCode):
             lines.append(f"const _{name.upper()}: {types['floats' if is_real else 'ints']} = {_list(items)}")
         return {
             "tables": "\n".join(lines),
-            "label_texts": _list(
-                [f"[{', '.join(map(self._dialect.string_literal, pieces))}]" for pieces in tables.labels.texts]
-            ),
+            "label_texts": self._label_texts(tables.labels),
+            "english_texts": self._label_texts(tables.labels_english),
         }
 
     # --- records ----------------------------------------------------------------------------------
@@ -176,8 +190,19 @@ class _Source(StepCode):
     def _sample_fields(self) -> str:
         fields = zip(self._fspa.signals, self._signals, strict=True)
         return self._fields(
-            [(name, "bool" if signal.type == "bool" else "float", _start(signal), signal) for signal, name in fields]
+            [
+                (name, "", "null", signal) if signal.type == "bool" else (name, "float", "INF", signal)
+                for signal, name in fields
+            ]
         )
+
+    def _assignments(self, bool_value: str) -> str:
+        """Return the lines that make all numbers of a sample missing, and give a value to its bools."""
+        lines = [
+            f"{name} = {bool_value if signal.type == 'bool' else 'INF'}"
+            for signal, name in zip(self._fspa.signals, self._signals, strict=True)
+        ]
+        return Gd.block(lines or ["pass"], depth=2)
 
     def _param_fields(self) -> str:
         fields = zip(self._fspa.params, self._params, strict=True)
@@ -186,15 +211,15 @@ class _Source(StepCode):
     def _fields(self, fields: Sequence[tuple[str, str, str, Signal | Param]]) -> str:
         """Return the lines that declare the variables of a class, each with its documentation.
 
-        Each of ``fields`` has the variable's name, its type, its first value, and the signal or param
-        that it is for.
+        Each of ``fields`` has the variable's name, its type (empty for any), its first value, and the
+        signal or param that it is for.
         """
         lines: list[str] = []
         for name, type_, value, declared in fields:
             # Godot 4 shows `##` comments as documentation. There, `[` begins a tag, except before a number.
             description = snippets.field_comment(name, declared, lambda text: text.replace("[", "[lb]"))
             comments = [f"#{line}" for line in self._printer.comment(description)]
-            field = f"var {name}: {type_} = {value}"
+            field = f"var {name}{f': {type_}' if type_ else ''} = {value}"
             # A short comment goes on the line of its field.
             if len(comments) == 1 and len(field) + len(comments[0]) < 90:
                 lines.append(f"{field}  {comments[0]}")
@@ -216,9 +241,10 @@ class _Source(StepCode):
         if self._fspa.clock_varies:
             lines += [f"if not ({DT} >= 0.0 and {DT} < INF):", f"\t_wrong_length = {DT}"]
             lines.append("\treturn _refuse(Problem.WRONG_LENGTH, 0)")
-        checked = False
         for index, (signal, name) in enumerate(zip(self._fspa.signals, self._signals, strict=True)):
             if signal.type == "bool":
+                lines.append(f"if sample.{name} == null and problem == Problem.NONE:")
+                lines += ["\tproblem = Problem.NOT_FINITE", f"\twhich = {index}"]
                 continue
             is_used = self._program.signals[index] in used
             value = name if is_used else f"sample.{name}"
@@ -226,7 +252,7 @@ class _Source(StepCode):
             call = f"_read({index}, {value}, {low}, {high})"
             lines += [f"var {name}: float = sample.{name}"] if is_used else []
             lines += [f"if not ({_within(value, signal)}):", f"\t{f'{name} = ' if is_used else ''}{call}"]
-            checked = True
+        lines += self._stop() if self._signals else []
         lines += self._bools(None)
         lines += [
             f"var {name}: float = _params.{name}"
@@ -240,7 +266,7 @@ class _Source(StepCode):
             for index, variable in enumerate(self._program.before)
             if variable in used
         ]
-        return [*lines, *self._stop()] if checked else lines
+        return lines
 
     def _bools(self, case: int | None) -> list[str]:
         """Return the code that converts bool signals to the numbers 0 and 1.
@@ -329,11 +355,12 @@ class _Source(StepCode):
     def _case(self, place: int) -> list[str]:
         case = self._program.cases[place]
         lines = [*self._printer.comment(case.comment), *self._bools(place), *self._values(place)]
-        return [*lines, *self._printer.lines(case.statements)]
+        return [*lines, *self._printer.lines(with_failed_step(case.statements))]
 
     def _judge(self) -> list[str]:
         # Adding 0 replaces -0 by 0, as in all monitors.
         lines = ["robustness += 0.0", "verdict = VERDICTS[state]", "accepting = ACCEPTING[state]", "steps += 1"]
+        lines += ["failed_step = 1"] if self._fspa.states[0].verdict == "violated" else []
         return [*lines, *self._printer.lines(self._program.reward_statements)]
 
     def _remember(self) -> list[str]:
@@ -341,6 +368,9 @@ class _Source(StepCode):
         return [f"registers[{index}] = {text}" for index, text in enumerate(texts)]
 
     # --- pieces -----------------------------------------------------------------------------------
+
+    def _label_texts(self, labels: LabelTexts) -> str:
+        return _list([f"[{', '.join(map(self._dialect.string_literal, pieces))}]" for pieces in labels.texts])
 
     def _strings(self, texts: Iterable[str]) -> str:
         return _list(map(self._dialect.string_literal, texts))
@@ -358,10 +388,6 @@ def _within(value: str, field: Signal | Param) -> str:
     return (
         f"{value} {'>' if field.low is None else '>='} {low} and {value} {'<' if field.high is None else '<='} {high}"
     )
-
-
-def _start(signal: Signal) -> str:
-    return "false" if signal.type == "bool" else "INF"
 
 
 def _list(items: Iterable[str]) -> str:
