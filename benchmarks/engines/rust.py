@@ -12,7 +12,7 @@ _FLAGS = ("rustc", "--edition", "2021", "-O", "-C", "debuginfo=0")
 
 def _build(task: Task) -> tuple[str, ...]:
     assignments = ", ".join(
-        f"{signal.field}: row[{place}]{' != 0.0' if signal.is_bool else ''}"
+        f"{signal.field}: {f'(row[{place}] != 0.0).into()' if signal.is_bool else f'row[{place}]'}"
         for place, signal in enumerate(task.signals)
     )
     for file in sorted((DRIVERS / "rust").iterdir()):

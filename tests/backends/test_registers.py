@@ -199,7 +199,7 @@ mod told_monitor;
 use told_monitor::{Monitor, Signals, REGISTER_NAMES};
 
 fn take(monitor: &mut Monitor, x: f64, a: bool, b: bool) {
-    match monitor.step(&Signals { x, a, b, ..Signals::default() }) {
+    match monitor.step(&Signals { x, a: Some(a), b: Some(b), ..Signals::default() }) {
         Ok(step) => print!("{}|{:?}||", step.state, step.robustness),
         Err(refused) => print!("0|0|{refused}|"),
     }

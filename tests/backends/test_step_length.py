@@ -143,11 +143,11 @@ mod paced_monitor;
 use paced_monitor::{Monitor, Problem, Signals};
 
 fn take(monitor: &mut Monitor, dt: f64, x: f64, a: bool, b: bool) {
-    match monitor.step(&Signals { x, a, b }, dt) {
+    match monitor.step(&Signals { x, a: Some(a), b: Some(b) }, dt) {
         Ok(step) => print!("{}|{:?}||", step.state, step.robustness),
         Err(refused) => {
             let wrong = if refused.problem == Problem::WrongDt { "wrong dt " } else { "" };
-            assert_eq!(monitor.step(&Signals { x, a, b }, dt), Err(refused));
+            assert_eq!(monitor.step(&Signals { x, a: Some(a), b: Some(b) }, dt), Err(refused));
             print!("0|0|{wrong}{refused}|");
         }
     }

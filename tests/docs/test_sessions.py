@@ -46,7 +46,7 @@ def test_the_guide_to_automata_of_other_tools_runs(tmp_path: Path) -> None:
         ("web", "node", 5),
         ("love", "lua5.4", 6),
         ("unity", "mcs", 6),
-        ("rust", "rustc", 5),
+        ("rust", "rustc", 6),
         ("godot", "godot3-server", 6),
     ],
 )

@@ -11,6 +11,7 @@ from textwrap import wrap
 
 from tltlc.automaton.finite.blowup import recursion_room
 from tltlc.automaton.fspa import Fspa
+from tltlc.automaton.text import label_text
 from tltlc.backends import Files, Options, Target
 from tltlc.backends.languages.rust_syntax import MATH_FUNCTIONS, RustPrinter, markdown_lines, string_literal
 from tltlc.backends.templates import fill_template, names_in
@@ -18,6 +19,7 @@ from tltlc.program import reward_step, snippets, states
 from tltlc.program.arithmetic import with_declaration
 from tltlc.program.build import program
 from tltlc.program.enums import flat_enums, upper_case
+from tltlc.program.label_texts import LabelTexts
 from tltlc.program.printer import CHOICE, Printer, comment_lines
 from tltlc.program.shapes import StateTables
 from tltlc.program.step_code import StepCode
@@ -32,10 +34,10 @@ _RESERVED = """
     impl in let loop macro match mod move mut override priv pub raw ref return self Self static struct super trait
     true try type typeof union unsafe unsized use virtual where while yield auto default macro_rules safe
     abs core exp f64 bool char str usize isize i8 i16 i32 i64 i128 u8 u16 u32 u64 u128 f16 f32 f128 math max min place
-    entered sample fmt std alloc main program tltl_math
-    ATOM_NAMES Default Err GROUPS LARGEST_GROUP Monitor NOTICE_ROOM None Notice Ok Option Params Place Problem Refused
-    Result SIGNAL_NAMES STATES Shown Signals Some Step Verdict WrongParam
-    EDGE_TARGETS FIRST_EDGES KINDS LABELS LEVEL_PROGRESS STATE_KINDS STATE_LEVELS STATE_SHAPES
+    entered failed sample fmt std alloc main program tltl_math
+    ATOM_NAMES Default Err FAILURES GROUPS LARGEST_GROUP Monitor NOTICE_ROOM None Notice Ok Option Params Place Problem
+    Refused Result SIGNAL_NAMES STATES Shown Signals Some Step Verdict WrongParam
+    EDGE_TARGETS FIRST_EDGES KINDS LABELS LABELS_ENGLISH LEVEL_PROGRESS STATE_KINDS STATE_LEVELS STATE_SHAPES
 """.split()
 """Names that no variable may have: words of the language, and names in the template."""
 
@@ -75,6 +77,8 @@ class _Source(StepCode):
         present += [] if all(program_.always_in_range) else ["keep"]
         present += ["math"] if program_.functions & MATH_FUNCTIONS else []
         present += ["number"] if any(signal.type != "bool" for signal in fspa.signals) else []
+        present += ["bool"] if any(signal.type == "bool" for signal in fspa.signals) else []
+        present += ["failures" if program_.failures else "no_failures"]
         with recursion_room():
             step = RustPrinter.block(self._step(), 2)
         give_code = self._give()
@@ -104,9 +108,8 @@ class _Source(StepCode):
             "name_at_fault": "Computed(self.which)" if fspa.registers else "ATOM_NAMES[self.which]",
             "largest_group": str(max(map(len, fspa.exclusive), default=0)),
             "groups": RustPrinter.items([f"&[{', '.join(map(str, group))}]" for group in fspa.exclusive]),
-            "signal_defaults": RustPrinter.block(
-                [f"{name}: {'false' if signal.type == 'bool' else 'f64::NAN'}," for signal, name in signals], 3
-            ),
+            "signal_defaults": RustPrinter.block(self._sample("None"), 3),
+            "sparse_defaults": RustPrinter.block(self._sample("Some(false)"), 2),
             "param_defaults": RustPrinter.block(
                 [f"{name}: {snippets.number_literal(param.value)}," for param, name in params], 3
             ),
@@ -115,7 +118,10 @@ class _Source(StepCode):
             ),
             "states": RustPrinter.block(self._states(), 1),
             **self._state_tables(program_.tables),
-            "sample": "sample" if program_.reads_sample else "_",
+            "failure_count": str(len(program_.failures)),
+            "failures": RustPrinter.block(self._failures(), 1),
+            "failed_step": "NonZeroU64::new(1)" if fspa.states[0].verdict == "violated" else "None",
+            "sample": "sample" if fspa.signals else "_",
             "step": step,
             "given": "sample" if give_code else "_",
             "give": RustPrinter.block(give_code or ["signal < SIGNAL_NAMES.len() && value.is_finite()"], 2),
@@ -161,6 +167,7 @@ class _Source(StepCode):
             state = self._fspa.states[index]
             values = (
                 string_literal(str(state.label) if tables is None else ""),
+                string_literal(label_text(self._fspa, index) if tables is None else ""),
                 f"Verdict::{state.verdict.capitalize()}",
                 snippets.boolean_literal(state.accepting),
                 snippets.boolean_literal(self._program.ends[index]),
@@ -171,17 +178,36 @@ class _Source(StepCode):
     def _state_tables(self, tables: StateTables | None) -> dict[str, str]:
         """Return the pieces of the template with the tables of states; they are empty if there are none."""
         if tables is None:
-            return {"tables": "", "labels": "", "kind_count": ""}
+            names = ("tables", "label_macros", "labels", "english_macros", "english_labels", "kind_count")
+            return dict.fromkeys(names, "")
         lines: list[str] = []
         for name, numbers in tables.step_tables(self._fspa.judge).items():
             type_ = "f64" if name == "level_progress" else "u16" if max(numbers) < 1 << 16 else "u32"
             items = RustPrinter.items([*map(repr, numbers)])
             lines.append(f"static {name.upper()}: [{type_}; {len(numbers)}] = [{items}];")
+        (macros, labels), (english_macros, english) = map(_shared_labels, (tables.labels, tables.labels_english))
         return {
             "tables": "\n".join(lines),
-            "labels": RustPrinter.items([string_literal(str(state.label)) for state in self._fspa.states]),
+            "label_macros": macros,
+            "labels": labels,
+            "english_macros": english_macros,
+            "english_labels": english,
             "kind_count": str(len(tables.kind_states)),
         }
+
+    def _failures(self) -> list[str]:
+        """Return a row for each pair of a clause and an atom that a step can fail at."""
+        return [
+            f"({', '.join('None' if text is None else f'Some({string_literal(text)})' for text in texts)}),"
+            for texts in snippets.failure_texts(self._program)
+        ]
+
+    def _sample(self, bool_: str) -> list[str]:
+        """Return the fields of a sample in which numbers are missing, and bools have the value ``bool_``."""
+        return [
+            f"{name}: {bool_ if signal.type == 'bool' else 'f64::NAN'},"
+            for signal, name in zip(self._fspa.signals, self._program.signals, strict=True)
+        ]
 
     def _give(self) -> list[str]:
         """Return the body of a generated function that sets one signal, given its index: a case for each signal."""
@@ -191,7 +217,7 @@ class _Source(StepCode):
         for index, (signal, name) in enumerate(zip(self._fspa.signals, self._program.signals, strict=True)):
             if signal.type == "bool":
                 lines.append(f"{_INDENT}{index} if value != 0.0 && value != 1.0 => return false,")
-            value = "value == 1.0" if signal.type == "bool" else "value"
+            value = "Some(value == 1.0)" if signal.type == "bool" else "value"
             lines.append(f"{_INDENT}{index} => sample.{name} = {value},")
         return [*lines, f"{_INDENT}_ => {{}}", "}", "true"]
 
@@ -202,6 +228,7 @@ class _Source(StepCode):
         lines: list[str] = []
         for index, (signal, name) in enumerate(zip(self._fspa.signals, self._program.signals, strict=True)):
             if signal.type == "bool":
+                lines.append(f"self.given({index}, sample.{name})?;")
                 continue
             low, high = (
                 snippets.number_literal(signal.low, "f64::NEG_INFINITY"),
@@ -225,9 +252,9 @@ class _Source(StepCode):
         names = self._program.bools_read_in(case)
         booleans = self._program.booleans
         return [
-            f"let {name} = sample.{name};"
+            f"let {name} = sample.{name} == Some(true);"
             if name in booleans
-            else f"let {name} = if sample.{name} {{ 1.0 }} else {{ 0.0 }};"
+            else f"let {name} = if sample.{name} == Some(true) {{ 1.0 }} else {{ 0.0 }};"
             for name in names
         ]
 
@@ -265,6 +292,7 @@ class _Source(StepCode):
         lines = [f"let mut {states.TARGET} = self.state;", f"let mut {states.LIMITING}: isize = -1;"]
         lines.append(f"let mut {states.ROBUSTNESS} = 0.0;")
         lines += [f"let mut {states.PROGRESS} = 0.0;"] if self._fspa.judge == "goal" else []
+        lines += [f"let mut {states.FAILURE}: isize = -1;"] if self._program.failures else []
         has_tables = self._program.tables is not None
         lines += [f"let {states.FIRST_EDGE} = FIRST_EDGES[self.state] as usize;"] if has_tables else []
         lines.append("match STATE_SHAPES[self.state] {" if has_tables else "match self.state {")
@@ -301,7 +329,26 @@ class _Source(StepCode):
 
 
 def _type(signal: Signal) -> str:
-    return "bool" if signal.type == "bool" else "f64"
+    return "Option<bool>" if signal.type == "bool" else "f64"
+
+
+def _shared_labels(labels: LabelTexts) -> tuple[str, str]:
+    """Return the labels of all states as items, after the macros of the texts that several of them share."""
+    numbers, items = iter(labels.numbers), []
+    for place in labels.state_texts:
+        first, *rest = labels.texts[place]
+        arguments = ", ".join(str(next(numbers)) for _ in rest)
+        items.append(f"l{place}!({arguments})" if rest else string_literal(first))
+    macros: list[str] = []
+    for place, (first, *rest) in enumerate(labels.texts):
+        if not rest:
+            continue
+        names = [f"$n{number}" for number in range(len(rest))]
+        pieces = [f"{name}, {string_literal(text)}" for name, text in zip(names, rest, strict=True)]
+        arguments = ", ".join(f"{name}:literal" for name in names)
+        text = f"concat!({string_literal(first)}, {', '.join(pieces)})"
+        macros.append(f"macro_rules! l{place} {{ ({arguments}) => {{ {text} }} }}")
+    return RustPrinter.block(macros), RustPrinter.items(items, 1)
 
 
 def _fields(fields: Sequence[tuple[str, str, Signal | Param]]) -> str:

@@ -10,7 +10,7 @@ const STEPS: usize = 20;
 const BEFORE: usize = 570;
 
 fn step(monitor: &mut Monitor, pit: bool) {
-    std::hint::black_box(monitor.step(&Signals { pit })).expect("a valid sample");
+    std::hint::black_box(monitor.step(&Signals { pit: Some(pit) })).expect("a valid sample");
 }
 
 fn nanoseconds(count: usize, before: usize) -> f64 {
