@@ -42,7 +42,7 @@ def test_the_guide_to_automata_of_other_tools_runs(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("page", "tool", "commands"),
     [
-        ("unreal", "g++", 5),
+        ("unreal", "g++", 6),
         ("web", "node", 5),
         ("love", "lua5.4", 6),
         ("unity", "mcs", 6),

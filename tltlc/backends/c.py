@@ -13,11 +13,12 @@ from typing import Final
 
 from tltlc.automaton.finite.blowup import recursion_room
 from tltlc.automaton.fspa import Fspa
+from tltlc.automaton.text import label_text
 from tltlc.backends import Files, Options, Target
 from tltlc.backends.languages.c_names import RESERVED
 from tltlc.backends.languages.c_printer import CPrinter
 from tltlc.backends.languages.c_step import StepCode, refusal
-from tltlc.backends.languages.c_tables import levels_text, tables_text
+from tltlc.backends.languages.c_tables import Labels, levels_text, shared_labels, tables_text
 from tltlc.backends.languages.c_text import bytes_of, string_literal
 from tltlc.backends.languages.c_verdict_step import verdict_pieces
 from tltlc.backends.templates import fill_template, names_in
@@ -25,6 +26,7 @@ from tltlc.monitor.samples import range_text
 from tltlc.program import reward_step, snippets, states
 from tltlc.program.build import program
 from tltlc.program.enums import flat_enums
+from tltlc.program.shapes import StateTables
 from tltlc.program.tree import FAILING, Choice, Compare, ProgramExpression, ProgramVariable, Real
 from tltlc.program.used_names import variables_read
 from tltlc.resolve.spec import Param, Signal
@@ -36,7 +38,7 @@ TARGET = Target(
 _INDENT = CPrinter.INDENT
 
 _RESERVED: Final = (
-    *(*RESERVED, "monitor", "sample", "result", "states", "none"),
+    *(*RESERVED, "monitor", "sample", "result", "states", "failures", "none"),
     *("state_kinds", "state_shapes", "first_edges", *CPrinter.TABLES),
 )
 """Names that no variable may have: reserved names of C, and the names that the template uses.
@@ -71,6 +73,8 @@ class _Source:
         failing = program_.functions & FAILING
         present = [*failing, *(["note"] if failing else []), *([] if all(program_.always_in_range) else ["atom"])]
         present += ["number"] if any(signal.type != "bool" for signal in fspa.signals) else []
+        present += ["bool"] if any(signal.type == "bool" for signal in fspa.signals) else []
+        present += ["failures" if program_.failures else "no_failures"]
         present += ["exclusive"] if program_.exclusive else []
         present += ["params"] if fspa.params else []
         present += ["states"] if program_.tables is None else ["tables"]
@@ -83,6 +87,7 @@ class _Source:
             # With registers, what a step recalls stands between what it reads and the rest.
             read, before = (self._read(), []) if fspa.registers else ([], self._read())
             step = CPrinter.block(snippets.paragraphs(before, *steps))
+        labels, english = self._labels(program_.tables)
         places = {
             "p": self._prefix,
             "title": snippets.title_comment(fspa, self._printer.comment),
@@ -104,11 +109,16 @@ class _Source:
             "atom_names": _list([string_literal(atom.name) for atom in fspa.atoms], '""'),
             "register_names": _list([string_literal(register.name) for register in fspa.registers], '""'),
             "register_starts": _list([snippets.number_literal(register.initial) for register in fspa.registers], "0.0"),
-            "labels": _list([string_literal(str(state.label)) for state in fspa.states], '""'),
-            "signal_defaults": CPrinter.block(
-                [f"sample.{name} = {'false' if signal.type == 'bool' else 'HUGE_VAL'};" for signal, name in signals]
-                or ["sample.none = false;"]
-            ),
+            "label_macros": labels.macros,
+            "labels": labels.items,
+            "label_ends": labels.ends,
+            "english_macros": english.macros,
+            "english_labels": english.items,
+            "english_ends": english.ends,
+            "signal_defaults": self._sample("-1"),
+            "sparse_defaults": self._sample("false"),
+            "failures": "\n".join(self._failures()),
+            "failed_step": str(int(fspa.states[0].verdict == "violated")),
             "param_defaults": CPrinter.block(
                 [f"params.{name} = {snippets.number_literal(param.value)};" for param, name in params]
                 or ["params.none = false;"]
@@ -156,7 +166,17 @@ class _Source:
     # --- records ----------------------------------------------------------------------------------
 
     def _type(self, signal: Signal) -> str:
-        return "bool" if signal.type == "bool" else "double"
+        # A short has room for a value that is neither true nor false, and is no part of a monitor: otherwise, compilers
+        # would read the sample again after they write a field of the monitor.
+        return "short" if signal.type == "bool" else "double"
+
+    def _sample(self, bool_: str) -> str:
+        """Return the code that makes a sample in which numbers are missing, and bools have the value ``bool_``."""
+        lines = [
+            f"sample.{name} = {bool_ if signal.type == 'bool' else 'HUGE_VAL'};"
+            for signal, name in zip(self._fspa.signals, self._program.signals, strict=True)
+        ]
+        return CPrinter.block(lines or ["sample.none = false;"])
 
     def _fields(self, fields: Sequence[tuple[str, str, Signal | Param]]) -> str:
         """Return the fields of a struct, each with its comment.
@@ -198,6 +218,26 @@ class _Source:
             lines.append(f"{_INDENT * 2}{{{', '.join(values)}}},")
         return lines
 
+    def _labels(self, tables: StateTables | None) -> tuple[Labels, Labels]:
+        """Return the labels of the states as formulas, and in words."""
+        if tables is not None:
+            return (
+                shared_labels(tables.labels, f"{self._prefix}_label_"),
+                shared_labels(tables.labels_english, f"{self._prefix}_english_"),
+            )
+        states_ = self._fspa.states
+        return (
+            Labels(_list([string_literal(str(state.label)) for state in states_], '""')),
+            Labels(_list([string_literal(label_text(self._fspa, state.id)) for state in states_], '""')),
+        )
+
+    def _failures(self) -> list[str]:
+        """Return a row for each pair of a clause and an atom that a step can fail at."""
+        return [
+            f"{_INDENT * 2}{{{', '.join('NULL' if text is None else string_literal(text) for text in texts)}}},"
+            for texts in snippets.failure_texts(self._program)
+        ]
+
     def _give(self) -> list[str]:
         """Return the body of a generated function that sets one signal, given its index: a case for each signal."""
         if not self._fspa.signals:
@@ -217,7 +257,7 @@ class _Source:
     def _read(self) -> list[str]:
         """Return the code that reads bool signals and params into local variables."""
         program_ = self._program
-        unread = [] if program_.reads_sample else ["(void)sample;"]
+        unread = [] if self._fspa.signals else ["(void)sample;"]
         return [*self._bools(None), *unread, *self._code.params(program_.variables_used)]
 
     def _holds(self, atom: int) -> ProgramExpression:
@@ -270,6 +310,7 @@ class _Source:
         lines = [f"int {states.TARGET} = monitor->state;", f"const char *{states.LIMITING} = NULL;"]
         lines.append(f"double {states.ROBUSTNESS} = 0.0;")
         lines += [f"double {states.PROGRESS} = 0.0;"] if self._fspa.judge == "goal" else []
+        lines += [f"int {states.FAILURE} = -1;"] if self._program.failures else []
         has_tables = self._program.tables is not None
         lines += [f"const int {states.FIRST_EDGE} = first_edges[monitor->state];"] if has_tables else []
         lines.append("switch (state_shapes[monitor->state]) {" if has_tables else "switch (monitor->state) {")

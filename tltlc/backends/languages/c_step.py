@@ -29,16 +29,15 @@ class StepCode:
     # --- the sample -------------------------------------------------------------------------------
 
     def numbers(self) -> list[str]:
-        """Return the code that reads the signals that are numbers, and clamps them to their ranges."""
-        signals = enumerate(zip(self._program.fspa.signals, self._program.signals, strict=True))
-        numbers = [(index, signal, name) for index, (signal, name) in signals if signal.type != "bool"]
-        lines = [f"double {name} = sample->{name};" for _, _, name in numbers]
-        return [*lines, *self._checked_reads(numbers)] if numbers else []
+        """Return the code that reads the signals that are numbers, clamped to their ranges, and checks all signals."""
+        signals = list(zip(self._program.fspa.signals, self._program.signals, strict=True))
+        lines = [f"double {name} = sample->{name};" for signal, name in signals if signal.type != "bool"]
+        return [*lines, *self._checked_reads(signals)] if signals else []
 
     def bools(self, names: Iterable[str], booleans: Collection[str]) -> list[str]:
         """Return the code that reads bool signals: the variables in ``booleans`` as bools, the others as 0 or 1."""
         return [
-            f"const bool {name} = sample->{name};"
+            f"const bool {name} = sample->{name} != 0;"
             if name in booleans
             else f"const double {name} = sample->{name} ? 1.0 : 0.0;"
             for name in names
@@ -48,14 +47,20 @@ class StepCode:
         """Return the code that reads the params among the variables that are used."""
         return [f"const double {name} = monitor->params.{name};" for name in self._program.params if name in used]
 
-    def _checked_reads(self, numbers: Sequence[tuple[int, Signal, str]]) -> list[str]:
+    def _checked_reads(self, signals: Sequence[tuple[Signal, str]]) -> list[str]:
         """Return the code that checks and clamps signals.
 
         One test for all signals comes first. Only if it fails are the signals checked one by one.
         """
-        tests = self._range_tests([(signal, name) for _, signal, name in numbers])
+        tests = self._range_tests([(signal, name) for signal, name in signals if signal.type != "bool"])
+        bools = [f"sample->{name}" for signal, name in signals if signal.type == "bool"]
+        # A bool that is missing is negative, and then so are all their bits together.
+        tests += [f"({' | '.join(bools)}) >= 0"] if bools else []
         lines = _wrapped(f"if (!({' && '.join(tests)})) {{")
-        for index, signal, name in numbers:
+        for index, (signal, name) in enumerate(signals):
+            if signal.type == "bool":
+                lines.append(f"{_INDENT}if ({self._prefix}_unset_(monitor, {index}, sample->{name})) return false;")
+                continue
             low, high = (
                 snippets.number_literal(signal.low, "-HUGE_VAL"),
                 snippets.number_literal(signal.high, "HUGE_VAL"),

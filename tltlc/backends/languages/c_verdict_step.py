@@ -16,7 +16,7 @@ def verdict_pieces(program: Program, printer: CPrinter) -> dict[str, str]:
     step = verdict_step(program)
     code = StepCode(program, printer, step)
     read = code.bools(step.bools, [name for name, type_ in step.bools.items() if type_ == "bool"])
-    if not read and all(signal.type == "bool" for signal in program.fspa.signals):
+    if not program.fspa.signals:
         read = ["(void)sample;"]
     read += code.params(step.variables_used)
     read += [
@@ -27,7 +27,9 @@ def verdict_pieces(program: Program, printer: CPrinter) -> dict[str, str]:
     keep = [f"monitor->memory.{register.before} = {register.now};" for register in step.kept]
     lines = snippets.paragraphs(read, code.compute(), code.check(step.exclusive), move, keep)
     return {
-        "verdict_fields": printer.block(map(_field, step.kept) if step.kept else ["bool none;"], 2),
+        "verdict_fields": printer.block(
+            [f"{printer.TYPES[register.type]} {register.before};" for register in step.kept] or ["bool none;"], 2
+        ),
         "verdict_starts": printer.block(
             [f"monitor->memory.{register.before} = {_start(register)};" for register in step.kept]
         ),
@@ -46,13 +48,6 @@ def _move(step: VerdictStep, code: StepCode, printer: CPrinter, *, has_tables: b
         lines += printer.lines(case.statements, depth=2)
         lines += [f"{_INDENT * 2}break;", f"{_INDENT}}}"]
     return [*lines, "}"]
-
-
-def _field(register: KeptRegister) -> str:
-    if register.type == "bool":
-        # A bool could be a part of the sample, so compilers would store it at each step.
-        return f"unsigned {register.before} : 1;"
-    return f"{CPrinter.TYPES[register.type]} {register.before};"
 
 
 def _start(register: KeptRegister) -> str:

@@ -16,6 +16,8 @@ static void print_result(const Result *result) {
 #else
     printf("%s\t%d\t%d\t", @SPEC@_verdict_name(result->verdict), result->accepting, result->done);
     printf("%.17g\t%.17g\t%.17g\t", result->progress, result->reward, result->robustness);
-    printf("%d\t%s\t%s\n", result->state, result->label, result->limiting ? result->limiting : "");
+    printf("%d\t%s\t%s\t", result->state, result->label, result->limiting ? result->limiting : "");
+    printf("%s\t%lld\t%s\t", result->label_english, result->failed_step, result->failed_clause ? result->failed_clause : "");
+    printf("%s\n", result->failed_atom ? result->failed_atom : "");
 #endif
 }

@@ -15,12 +15,28 @@ typedef struct {
     double reward;
     double robustness;
     const char *limiting;    // NULL for none
+    const char *label_english;
+    long long failed_step;    // 0 for none
+    const char *failed_clause;
+    const char *failed_atom;
 } Result;
+
+typedef struct {
+    const char *clause, *atom;
+} Failure;
+
+// The steps of a monitor so far, and what its trace fails at.
+typedef struct {
+    long long steps, failed_step;
+    const Failure *failure;
+} History;
 
 static const int states[] = {0, 1, 2};    // of the verdicts
 
 // No progress and no reward can be earned: the rules are never satisfied for good.
-static inline void result_set(Result *result, Verdict verdict, double robustness, const char *label) {
+static inline void result_set(
+    Result *result, Verdict verdict, double robustness, const char *label, const char *english, const History *history
+) {
     result->state = states[verdict];
     result->label = verdict == VIOLATED ? "false" : label;
     result->verdict = verdict;
@@ -30,6 +46,15 @@ static inline void result_set(Result *result, Verdict verdict, double robustness
     result->reward = 0.0;
     result->robustness = robustness;
     result->limiting = NULL;
+    result->label_english = verdict == VIOLATED ? "The spec is violated." : english;
+    result->failed_step = history->failed_step;
+    result->failed_clause = history->failed_step ? history->failure->clause : NULL;
+    result->failed_atom = history->failed_step ? history->failure->atom : NULL;
+}
+
+static inline void history_fail(History *history, const Failure *failure) {
+    history->failed_step = history->steps;
+    history->failure = failure;
 }
 
 static inline double greatest(double x, double y) {
@@ -49,7 +74,9 @@ static inline double recent(uint16_t age, double border) {
 static void print_result(const Result *result) {
     printf("%s\t%d\t%d\t", verdict_names[result->verdict], result->accepting, result->done);
     printf("%.17g\t%.17g\t%.17g\t", result->progress, result->reward, result->robustness);
-    printf("%d\t%s\t%s\n", result->state, result->label, result->limiting ? result->limiting : "");
+    printf("%d\t%s\t%s\t", result->state, result->label, result->limiting ? result->limiting : "");
+    printf("%s\t%lld\t%s\t", result->label_english, result->failed_step, result->failed_clause ? result->failed_clause : "");
+    printf("%s\n", result->failed_atom ? result->failed_atom : "");
 }
 
 #endif
