@@ -106,8 +106,8 @@ def _limit_note(traces: Iterable[JudgedTrace], limit: int | None) -> str:
     longer = sum(limit is not None and trace.verdict is not None and trace.verdict.samples > limit for trace in traces)
     if not longer:
         return ""
-    are = "trace is" if longer == 1 else "traces are"
-    return f"{longer} {are} longer than the limit of {limit} steps and judged as a whole: `--episodes` ends them there"
+    are, them = ("trace is", "it") if longer == 1 else ("traces are", "them")
+    return f"{longer} {are} longer than the limit of {limit} steps and judged whole: `--episodes` ends {them} there"
 
 
 def _with_progress(judged: Iterable[JudgedTrace], total: int) -> Iterator[JudgedTrace]:

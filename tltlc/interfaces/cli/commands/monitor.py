@@ -134,6 +134,9 @@ def _judge_steps(spec: str, trace: str, settings: CompileSettings, format: str, 
             result = outcome(show(fspa, failing.noted(_with_notices(rows, monitor.notices, report))))
         (_end_json if output == "json" else _end_text)(result, monitor, failing)
         report.add(steps.warnings())
+        if result and fspa.limit_steps is not None and result.steps > fspa.limit_steps:
+            limit = f"the limit of {fspa.limit_steps} steps"
+            report.say(f"the trace is longer than {limit} and judged whole: `--episodes` ends it there")
     return report.status or (exits.CLEAN if result and result.accepted else exits.FINDINGS)
 
 

@@ -24,9 +24,10 @@ def _finding(spec: SpecView) -> RuleFinding:
     else:
         message = "an episode that never gets there never ends, and a fast player gets no more than a slow one"
     if spec.spec.clock_varies:
-        help_ = "add `limit 2000 steps`: where the clock varies, a limit counts samples, whatever their length"
+        help_ = "say how many samples an episode may have, such as `limit 20000 steps`; recorded play needs no limit"
     else:
-        help_ = f"add `{'limit 400 steps' if spec.spec.clock_s is None else 'limit 30 s'}`"
+        example = "limit 3000 steps" if spec.spec.clock_s is None else "limit 5 min"
+        help_ = f"say how long an episode may last, such as `{example}`; recorded play needs no limit"
     return RuleFinding(f"`{spec.spec.name}` has no limit", (spec.name_label(message),), help_)
 
 

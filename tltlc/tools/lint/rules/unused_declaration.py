@@ -55,7 +55,10 @@ def _group_finding(declaration: GroupDecl, view: FileView) -> RuleFinding:
 
 def _finding(kind: str, name: str, place: Span, removed: tuple[Span, ...], view: FileView) -> RuleFinding:
     title = f"nothing uses the {kind} `{name}`"
-    return RuleFinding(title, (view.label(place),), "remove it, or use it", removal_fix("Remove it", removed))
+    help_ = "remove it, or use it"
+    if kind == "signal":
+        help_ += "; a column of a recording needs no declaration"
+    return RuleFinding(title, (view.label(place),), help_, removal_fix("Remove it", removed))
 
 
 def _is_refined(declaration: _CheckedDeclaration, view: FileView) -> bool:
