@@ -182,9 +182,7 @@ def test_episodes_end_at_the_limit(folder: Path, tltlc) -> None:  # type: ignore
     Path("fetch.tltl").write_text(FETCH.replace("}", "limit 2 steps }"))
     whole = tltlc("monitor", "fetch.tltl", "traces/a.csv", "--summary")
     assert whole.out.splitlines()[-1] == "1 of 1 accepted"
-    assert whole.err == (
-        "1 trace is longer than the limit of 2 steps and judged whole: `--episodes` ends it there\n"
-    )
+    assert whole.err == ("1 trace is longer than the limit of 2 steps and judged whole: `--episodes` ends it there\n")
     episode = tltlc("monitor", "fetch.tltl", "traces/a.csv", "--episodes")
     assert (episode.status, episode.err) == (1, "")
     clause = "`reach has_key then at_exit`"

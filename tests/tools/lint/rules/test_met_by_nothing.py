@@ -132,3 +132,8 @@ def failing(finding: RuleFinding, spec: SpecView) -> Iterator[Formula]:
         if label.message.startswith("true while") and formula:
             yield formula.args[0]
         yield from (atom(name) for name in re.findall("`([^`]*)`", label.message))
+
+
+def test_a_comparison_whose_atom_is_the_opposite_is_a_goal() -> None:
+    text = "signal a: bool\nsignal kills in [0, 9]\nspec s { limit 9 steps reach a then kills >= 1 }"
+    assert "TLT0412" not in codes(text)

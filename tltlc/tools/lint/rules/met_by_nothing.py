@@ -8,7 +8,7 @@ from typing import Final
 from tltlc.core.source import Span
 from tltlc.diagnostics.diagnostic import Label
 from tltlc.grammar import walk
-from tltlc.grammar.tree import BinaryExpr
+from tltlc.grammar.tree import BinaryExpr, Unary
 from tltlc.logic.formula import TRUE, Formula, and_, atom, eventually, not_, or_, rebuild
 from tltlc.resolve.spec import Conjunct
 from tltlc.tools.lint.atom_relations import relations
@@ -33,11 +33,13 @@ def check(view: FileView) -> Iterator[RuleFinding]:
 def _absent_last(spec: SpecView) -> Iterator[RuleFinding]:
     """Yield a finding for `reach a then not b`: the last goal only asks that something new does not hold.
 
-    One step without it is enough. `reach a then not a` asks for the end of a, and is left out.
+    One step without it is enough. `reach a then not a` asks for the end of a, and is left out, as is a
+    comparison such as `kills >= 1`, which is the negation of another atom.
     """
     for _, value in spec.clauses("reach"):
         *before, last = [value.with_tree(step) for step in walk.operands(value.tree, "then")]
-        formula = last.formula() if before else None
+        tree = without_brackets(last.tree)
+        formula = last.formula() if before and isinstance(tree, Unary) and tree.op == "not" else None
         earlier = [goal.formula() for goal in before]
         if formula is None or formula.op != "not" or formula.args[0].op != "atom" or None in earlier:
             continue
