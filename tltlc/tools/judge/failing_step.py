@@ -89,7 +89,7 @@ class FailingStep:
         }
 
     def _value_words(self, atom: int) -> str:
-        """Return the value of an atom, or for a comparison the value of the side that varies, with its unit."""
+        """Return the value of an atom, or for a comparison the values that it compares."""
         fspa = self._monitor.fspa
         measured = measure(fspa, atom, self._known)
         if measured is not None and measured.value is not None:
@@ -98,8 +98,9 @@ class FailingStep:
         if AtomValue(fspa.atoms[atom].name) in Flags(fspa, schedule(fspa)):
             return f"{atom_words(fspa, atom)} is {'true' if self._values[atom] > 0.0 else 'false'}"
         read = [node.name for node in nodes(fspa.atoms[atom].expression) if isinstance(node, SignalValue)]
-        signals = {signal.name for signal in fspa.signals}
-        measures = [f"{name} is {short_number(self._known[name])}" for name in dict.fromkeys(read) if name in signals]
+        measures = [f"{name} is {short_number(self._known[name])}" for name in dict.fromkeys(read)]
+        if measured is not None:
+            return ", ".join(measures)
         value = f"{atom_words(fspa, atom)} is {short_number(self._values[atom])}"
         return f"{value} ({', '.join(measures)})" if measures else value
 

@@ -20,6 +20,9 @@ from tltlc.tools.lint.rules import idle_until
         ("avoid a until b", "avoid b"),
         ("reach c then (a until b)", "reach c then b"),
         ("avoid (a or c) until b", "avoid b"),
+        ("avoid a or c until b", "avoid a or b"),
+        ("avoid a until b or c", "avoid b or c"),
+        ("reach a or (c until b)", "reach a or b"),
     ],
 )
 def test_an_until_whose_first_operand_is_irrelevant_is_reported(clause: str, same: str) -> None:
@@ -42,6 +45,8 @@ def test_an_until_whose_first_operand_matters_is_not_reported(clause: str) -> No
         ("avoid a until b", "require (not a) weak_until b"),
         ("avoid (a or c) until b", "require (not (a or c)) weak_until b"),
         ("reach a until b", "require a until b"),
+        ("avoid a or c until b", "require (not (a or c)) weak_until b"),
+        ("avoid a until b or c", "require (not a) weak_until (b or c)"),
     ],
 )
 def test_the_suggested_clause_is_judged_at_the_same_moment(clause: str, suggested_clause: str) -> None:

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING, Final
 
 from tltlc.diagnostics.diagnostic import Label
-from tltlc.grammar.tree import BinaryExpr
+from tltlc.grammar.tree import BinaryExpr, Expr
 from tltlc.grammar.walk import operands
-from tltlc.tools.lint.file_view import FileView, operand_text, without_brackets
+from tltlc.tools.lint.file_view import FileView, ScopedExpression, operand_text, without_brackets
 from tltlc.tools.lint.rule import LintRule, RuleFinding
+
+if TYPE_CHECKING:
+    from typing import TypeGuard
 
 
 def check(view: FileView) -> Iterator[RuleFinding]:
@@ -21,20 +25,50 @@ def check(view: FileView) -> Iterator[RuleFinding]:
     for spec in view.specs:
         for clause, value in spec.clauses("reach", "avoid"):
             *earlier, last = operands(value.tree, "then")
-            part = value.with_tree(without_brackets(last))
-            if not isinstance(part.tree, BinaryExpr) or part.tree.op != "U":
+            if not earlier:
+                yield from _among_alternatives(clause.kind, value)
                 continue
-            before, goal = value.with_tree(part.tree.left), value.with_tree(part.tree.right)
-            rest = goal.text if earlier else f"{clause.kind} {goal.text}"
-            label = Label(value.source, part.tree.span, f"this means only `{rest}`")
-            help_ = f"write `require {operand_text(before)} until {operand_text(goal)}`"
-            if clause.kind == "avoid":
-                # `avoid` does not require its second formula to occur, hence `weak_until`.
-                help_ = f"write `require (not {operand_text(before)}) weak_until {operand_text(goal)}`"
-            if earlier:
+            part = value.with_tree(without_brackets(last))
+            if _is_until(part.tree):
                 previous = operand_text(value.with_tree(earlier[-1]))
+                label = Label(
+                    value.source, part.tree.span, f"this means only `{value.with_tree(part.tree.right).text}`"
+                )
                 help_ = f"write `{previous} and ({part.text})`, which counts from that step on"
-            yield RuleFinding("the first half of this `until` has no effect", (label,), help_)
+                yield RuleFinding(_TITLE, (label,), help_)
 
+
+def _among_alternatives(kind: str, value: ScopedExpression) -> Iterator[RuleFinding]:
+    """Yield a finding for the first `until` among the operands of `or`: ``avoid a or b until c`` means ``a or c``."""
+    alternatives = [value.with_tree(without_brackets(part)) for part in operands(without_brackets(value.tree), "or")]
+    place = next((place for place, part in enumerate(alternatives) if _is_until(part.tree)), None)
+    if place is None:
+        return
+    until = alternatives[place].tree
+    assert isinstance(until, BinaryExpr)
+    before, goal = value.with_tree(until.left), value.with_tree(until.right)
+    others = alternatives[:place], alternatives[place + 1 :]
+    rest = " or ".join(part.text for part in (*others[0], goal, *others[1]))
+    label = Label(value.source, until.span, f"this means only `{kind} {rest}`")
+    first, second = _joined([*others[0], before]), _joined([goal, *others[1]])
+    help_ = f"write `require {first} until {second}`"
+    if kind == "avoid":
+        # `avoid` does not require its second formula to occur, hence `weak_until`.
+        help_ = f"write `require (not {first}) weak_until {second}`"
+    yield RuleFinding(_TITLE, (label,), help_)
+
+
+def _joined(parts: Sequence[ScopedExpression]) -> str:
+    """Return the text of a disjunction, in brackets if it has several parts."""
+    if len(parts) == 1:
+        return operand_text(parts[0])
+    return f"({' or '.join(part.text for part in parts)})"
+
+
+def _is_until(tree: Expr) -> TypeGuard[BinaryExpr]:
+    return isinstance(tree, BinaryExpr) and tree.op == "U"
+
+
+_TITLE: Final = "the first half of this `until` has no effect"
 
 RULE = LintRule("TLT0433", "warning", check)
