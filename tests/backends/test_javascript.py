@@ -16,6 +16,7 @@ from pathlib import Path
 import pytest
 from hypothesis import HealthCheck, Phase, assume, given, settings
 
+from tests.backends.failures import guarded
 from tests.backends.monitors import FAR
 from tests.backends.strategies import HOSTILE, hostile_automata
 from tests.fixtures import cover_and_hide
@@ -28,6 +29,7 @@ from tltlc.logic import formula as f
 from tltlc.monitor import Monitor
 from tltlc.resolve import spec
 from tltlc.tools.conformance.corpus import CASES
+from tltlc.tools.conformance.expected_output import COLUMNS
 
 TSC = os.environ.get("TSC") or shutil.which("tsc")
 ESBUILD = os.environ.get("ESBUILD") or shutil.which("esbuild")
@@ -76,13 +78,14 @@ def rows(fspa: Fspa, samples: Sequence[Mapping[str, float]]) -> list[list[str]]:
         step = monitor.step(sample)
         flags = [str(flag).lower() for flag in (step.accepting, step.done)]
         figures = [f"{value:.17g}" for value in (step.progress, step.reward, step.robustness)]
-        rows_.append([str(number), str(step.state), step.verdict, *flags, *figures, step.limiting or ""])
+        failed = (step.failed_clause or "", step.failed_atom or "", str(step.failed_step or ""))
+        rows_.append([str(number), str(step.state), step.verdict, *flags, *figures, step.limiting or "", *failed])
     return rows_
 
 
 def printed_rows(out: str) -> list[list[str]]:
     header, *rows_ = csv.reader(io.StringIO(out, newline=""), strict=True)
-    assert header == "step,state,verdict,accepting,done,progress,reward,robustness,limiting".split(",")
+    assert header == [*COLUMNS]
     return rows_
 
 
@@ -111,7 +114,7 @@ def test_hostile_names_stay_distinct(tmp_path: Path) -> None:
     status, out, err = run_module(write_module(fspa, tmp_path), "--full", "-", stdin=trace_of(samples))
     assert (status, err) == (0, "")
     assert printed_rows(out) == rows(fspa, samples)
-    assert [row[-1] for row in printed_rows(out)] == [*samples[0]]
+    assert [row[8] for row in printed_rows(out)] == [*samples[0]]
 
 
 def awkward(all_names: Sequence[str]) -> tuple[Fspa, list[dict[str, float]]]:
@@ -260,7 +263,22 @@ monitor.state = 1;
 const name: string = same.limiting;
 // @ts-expect-error: a verdict is one of four.
 if (verdict === "unknown") throw new MonitorError("never");
-export { limiting, name, params };
+const failed: [string, string | null, string | null, number | null] =
+  [same.labelEnglish, same.failedClause, same.failedAtom, same.failedStep];
+export { failed, limiting, name, params };
+"""
+
+SPARSE_TYPED_USE = """
+import { Monitor, type SparseSignals } from "./guarded_monitor.mjs";
+
+const monitor = new Monitor<SparseSignals>({}, { sparse: true });
+monitor.step({ health: 1 });
+// @ts-expect-error: numbers are needed.
+monitor.step({ seen: true });
+// @ts-expect-error: all bools are needed.
+new Monitor().step({ health: 1 });
+// @ts-expect-error: there is no such option.
+new Monitor({}, { spare: true });
 """
 
 PLAIN_USE = """
@@ -289,14 +307,19 @@ def test_types_are_found_and_correct(tmp_path: Path, module: str, resolution: st
     write_module(cover_and_hide(), tmp_path)
     write_module(build(spec_from_formula(f.TRUE, "again")), tmp_path)
     (tmp_path / "use.mts").write_text(TYPED_USE)
+    write_module(guarded(), tmp_path)
     (tmp_path / "plain.mts").write_text(PLAIN_USE)
-    assert type_errors(tmp_path, ["use.mts", "plain.mts"], module=module, moduleResolution=resolution) == ""
+    (tmp_path / "sparse.mts").write_text(SPARSE_TYPED_USE)
+    assert (
+        type_errors(tmp_path, ["use.mts", "plain.mts", "sparse.mts"], module=module, moduleResolution=resolution) == ""
+    )
 
 
 @types
 def test_the_code_passes_the_type_checker(tmp_path: Path) -> None:
     """Some modules of the corpus, and hostile ones; untyped parameters of helpers count as ``any``."""
-    fspas = [*(make().fspa for make in [*CASES.values()][::5]), awkward(NAMES)[0], build(spec_from_formula(f.TRUE))]
+    fspas = [*(make().fspa for make in [*CASES.values()][::5]), awkward(NAMES)[0], guarded()]
+    fspas += [build(spec_from_formula(f.TRUE)), build(spec_from_formula(f.FALSE, "never"))]
     modules = [write_module(fspa, tmp_path).name for fspa in fspas]
     (tmp_path / "node.d.ts").write_text("declare const process: any;\n")
     messages = type_errors(

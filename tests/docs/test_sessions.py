@@ -43,7 +43,7 @@ def test_the_guide_to_automata_of_other_tools_runs(tmp_path: Path) -> None:
     ("page", "tool", "commands"),
     [
         ("unreal", "g++", 6),
-        ("web", "node", 5),
+        ("web", "node", 6),
         ("love", "lua5.4", 6),
         ("unity", "mcs", 6),
         ("rust", "rustc", 6),

@@ -12,6 +12,7 @@ from itertools import combinations
 
 from tltlc.automaton.finite.blowup import recursion_room
 from tltlc.automaton.fspa import Fspa
+from tltlc.automaton.text import label_text
 from tltlc.backends import Files, Options, Target
 from tltlc.backends.languages.javascript_syntax import (
     JavaScriptPrinter,
@@ -29,6 +30,7 @@ from tltlc.program import reward_step, snippets, states
 from tltlc.program.arithmetic import with_declaration
 from tltlc.program.build import DT, program
 from tltlc.program.enums import enums_of
+from tltlc.program.label_texts import LabelTexts
 from tltlc.program.nesting_limit import split_deep_values
 from tltlc.program.printer import CHOICE, comment_lines
 from tltlc.program.shapes import StateTables
@@ -66,7 +68,7 @@ _RESERVED = """
     in instanceof int interface let long native new null of package private protected public return set short static
     super switch synchronized this throw throws transient true try typeof undefined var void volatile while with yield
     Infinity Math Monitor MonitorError NaN Number Object Result RowReader Set String TextDecoder globalThis process
-    ATOMS EXCLUSIVE PARAMS SIGNALS STATES entered listed max min paramValues result shown signals
+    ATOMS EXCLUSIVE FAILURES PARAMS SIGNALS STATES entered listed max min paramValues result shown signals
     EDGE_TARGETS FIRST_EDGES LEVEL_PROGRESS STATE_LEVELS STATE_SHAPES
 """.split()
 """Names that no variable may have: words of the language, and other names that the step function uses."""
@@ -91,6 +93,7 @@ class _Source(StepCode):
         self._names = (*self._program.signals, *self._program.params, *self._program.atoms)
         names = [atom.name for atom in fspa.atoms]
         self._printer = JavaScriptPrinter(names)
+        self._can_fail = any(state.verdict == "violated" for state in fspa.states)
         # Math.min may return 0 for -0, which does not matter for atoms, and is faster than a method of the monitor.
         self._moves = JavaScriptPrinter(names, ("min", "max"))
 
@@ -110,6 +113,8 @@ class _Source(StepCode):
         present += ["some"] if fspa.signals or needs_errors else []
         present += ["clamp"] if fspa.signals or "range" in present else []
         present += ["params"] if program_.variables_used & {*program_.params} else []
+        present += ["fails"] if self._can_fail else []
+        present += ["causes"] if program_.failures else []
         places = {
             "title": snippets.title_comment(fspa, self._printer.comment),
             "file": self._module,
@@ -128,6 +133,8 @@ class _Source(StepCode):
             "computed": "${computed(this.#atom)}" if fspa.registers else "atom \\`${ATOMS[this.#atom]}\\`",
             # The monitor checks the names of params even if no atom reads a param.
             "params_kept": "this.#params = " if "params" in present else "",
+            "options": ", options = {}" if fspa.signals else "",
+            "failures": array(self._failures()),
             "exclusive": array([f"[{', '.join(map(str, group))}]" for group in fspa.exclusive]),
             "states": array(self._states()),
             **self._state_tables(program_.tables),
@@ -153,6 +160,7 @@ class _Source(StepCode):
         places = {"title": title, "signal_fields": _fields(signals), "param_fields": _fields(params)}
         places["dt"] = f"{DT}: number, " if fspa.clock_varies else ""
         places["enums"] = self._enum_types()
+        places["sparse"] = _sparse_signals(fspa.signals)
         present = ["signals" if signals else "no_signals", "params" if params else "no_params"]
         present += ["registers"] if fspa.registers else []
         present += ["varies"] if fspa.clock_varies else []
@@ -192,20 +200,32 @@ class _Source(StepCode):
         for index in self._program.state_rows:
             state, ends = self._fspa.states[index], snippets.boolean_literal(self._program.ends[index])
             values = f'verdict: "{state.verdict}", accepting: {snippets.boolean_literal(state.accepting)}, ends: {ends}'
-            label = f"label: {string_literal(str(state.label))}, " if tables is None else ""
-            rows.append(f"{{ {label}{values} }}")
+            if tables is None:
+                english = string_literal(label_text(self._fspa, index))
+                values = f"label: {string_literal(str(state.label))}, labelEnglish: {english}, {values}"
+            rows.append(f"{{ {values} }}")
         return rows
+
+    def _failures(self) -> list[str]:
+        """Return a row for what a step can fail at."""
+        return [
+            f"{{ clause: {_text_or_null(clause)}, atom: {_text_or_null(atom)} }}"
+            for clause, atom in snippets.failure_texts(self._program)
+        ]
 
     def _state_tables(self, tables: StateTables | None) -> dict[str, str]:
         """Return the pieces of the template with the tables of states; they are empty if there are none."""
         if tables is None:
-            return {"tables": "", "label_texts": ""}
+            return {"tables": "", "label_texts": "", "english_texts": ""}
         lines = [
             f"const {name.upper()} = [{JavaScriptPrinter.items([*map(number_literal, numbers)])}];"
             for name, numbers in tables.all_tables(self._fspa.judge).items()
         ]
-        texts = [f"[{', '.join(map(string_literal, pieces))}]" for pieces in tables.labels.texts]
-        return {"tables": "\n".join(lines), "label_texts": array(texts)}
+        return {
+            "tables": "\n".join(lines),
+            "label_texts": _label_texts(tables.labels),
+            "english_texts": _label_texts(tables.labels_english),
+        }
 
     # --- the step function ------------------------------------------------------------------------
 
@@ -276,6 +296,7 @@ class _Source(StepCode):
         lines = [f"let {states.TARGET} = this.state;", f"let {states.ROBUSTNESS} = 0;"]
         lines += [f"let {states.PROGRESS} = 0;"] if self._fspa.judge == "goal" else []
         lines.append(f"let {states.LIMITING} = null;")
+        lines += [f"let {states.FAILURE} = -1;"] if self._program.failures else []
         has_tables = self._program.tables is not None
         lines += [f"const {states.FIRST_EDGE} = FIRST_EDGES[this.state];"] if has_tables else []
         lines.append(f"switch ({'STATE_SHAPES[this.state]' if has_tables else 'this.state'}) {{")
@@ -302,7 +323,17 @@ class _Source(StepCode):
 
     def _remember(self) -> list[str]:
         texts = (self._printer.text(value, CHOICE) for value in self._program.kept)
-        return [f"this.registers[{index}] = {text};" for index, text in enumerate(texts)]
+        return [*(f"this.registers[{index}] = {text};" for index, text in enumerate(texts)), *self._fail()]
+
+    def _fail(self) -> list[str]:
+        """Return the code that keeps what the trace fails at, at the first step at which it does."""
+        if not self._can_fail:
+            return []
+        step = f"step: {reward_step.STEPS}"
+        if self._program.failures:
+            return [f"if ({states.FAILURE} >= 0) this.#failure = {{ ...FAILURES[{states.FAILURE}], {step} }};"]
+        # The trace has failed before it begins.
+        return [f"if (this.#failure === NOT_FAILED) this.#failure = {{ clause: null, atom: null, {step} }};"]
 
 
 # --- pieces ---------------------------------------------------------------------------------------
@@ -324,10 +355,24 @@ def _fields(fields: Sequence[tuple[str, str, str]]) -> str:
     return JavaScriptPrinter.block(lines)
 
 
+def _text_or_null(text: str | None) -> str:
+    return "null" if text is None else string_literal(text)
+
+
+def _label_texts(labels: LabelTexts) -> str:
+    return array([f"[{', '.join(map(string_literal, pieces))}]" for pieces in labels.texts])
+
+
 def _row(field: Signal | Param, properties: str) -> str:
     least = "-Infinity" if field.low is None else number_literal(field.low)
     greatest = "Infinity" if field.high is None else number_literal(field.high)
     return f"{{ name: {string_literal(field.name)}, {properties}, low: {least}, high: {greatest} }}"
+
+
+def _sparse_signals(signals: Sequence[Signal]) -> str:
+    """Return the TypeScript type of a sample in which bools may be missing."""
+    bools = " | ".join(string_literal(signal.name) for signal in signals if signal.type == "bool")
+    return f"Omit<Signals, {bools}> & Partial<Pick<Signals, {bools}>>" if bools else "Signals"
 
 
 def _type(signal: Signal) -> str:
