@@ -89,7 +89,7 @@ def test_hostile_names_stay_distinct(interpreter: str, tmp_path: Path) -> None:
     status, out, err = run_module(interpreter, write_module(fspa, tmp_path), "--full", "-", stdin=trace_of(samples))
     assert (status, err) == (0, "")
     assert printed_rows(out) == rows(fspa, samples)
-    assert [row[-1] for row in printed_rows(out)] == [*samples[0]]
+    assert [row[8] for row in printed_rows(out)] == [*samples[0]]
 
 
 # --- limits of Lua --------------------------------------------------------------------------------

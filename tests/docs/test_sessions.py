@@ -44,7 +44,7 @@ def test_the_guide_to_automata_of_other_tools_runs(tmp_path: Path) -> None:
     [
         ("unreal", "g++", 6),
         ("web", "node", 6),
-        ("love", "lua5.4", 6),
+        ("love", "lua5.4", 7),
         ("unity", "mcs", 6),
         ("rust", "rustc", 6),
         ("godot", "godot3-server", 6),

@@ -14,7 +14,15 @@ from typing import Final
 
 from tltlc.automaton.finite.blowup import recursion_room
 from tltlc.automaton.fspa import Fspa
+from tltlc.automaton.text import label_text
 from tltlc.backends import Files, Options, Target
+from tltlc.backends.languages.lua_declarations import (
+    declaration_row,
+    failures_table,
+    field_annotation,
+    label_texts_table,
+    signal_type,
+)
 from tltlc.backends.languages.lua_syntax import (
     KEYWORDS,
     LuaPrinter,
@@ -31,14 +39,13 @@ from tltlc.program import reward_step, snippets, states
 from tltlc.program.arithmetic import with_declaration
 from tltlc.program.build import DT, program
 from tltlc.program.enums import enums_of
-from tltlc.program.names import printable_line
 from tltlc.program.nesting_limit import split_deep_values
 from tltlc.program.printer import CHOICE
 from tltlc.program.shapes import StateTables
 from tltlc.program.step_code import StepCode
 from tltlc.program.tree import FAILING, Statement
 from tltlc.program.used_names import functions_called, variables_read
-from tltlc.resolve.spec import Param, Signal
+from tltlc.resolve.spec import Signal
 
 TARGET = Target(
     "lua",
@@ -54,8 +61,8 @@ If there are more, each has a function.
 """
 
 _OWN = """
-    EDGE_TARGETS FIRST_EDGES LEVEL_PROGRESS MOVES STATES STATE_LEVELS STATE_SHAPES abs at_step divide entered exp
-    failure huge kept max min param part power problem read result self signal signals sqrt state_shape tanh
+    EDGE_TARGETS FAILURES FIRST_EDGES LEVEL_PROGRESS MOVES STATES STATE_LEVELS STATE_SHAPES abs at_step divide entered
+    exp huge kept max min no_value param part power problem read result self signal signals sqrt state_shape tanh
     together type value
 """.split()
 """Names that the step function uses in the template; no variable of the program may have them."""
@@ -76,6 +83,7 @@ class _Source(StepCode):
         self._file, self._tables_text = file, ", ".join(tables)
         self._names = [atom.name for atom in fspa.atoms]
         self._at_goal = fspa.judge == "goal"
+        self._can_fail = any(state.verdict == "violated" for state in fspa.states)
         with recursion_room():
             self._variables_are_fields = needs_fields(self._program)
             fields = variable_fields(self._program) if self._variables_are_fields else {}
@@ -100,6 +108,7 @@ class _Source(StepCode):
         present += [] if all(program_.always_in_range) else ["kept"]
         present += [] if self._few_cases else ["moves"]
         present += ["enums"] if enums else []
+        present += ["failures"] if program_.failures else []
         present += ["many_registers"] if fspa.registers and self._variables_are_fields else []
         places = {
             "p": fspa.name,
@@ -109,20 +118,21 @@ class _Source(StepCode):
             "enums": enum_tables(enums),
             "example": snippets.example_sample(fspa.signals, table_key, " = "),
             "signal_fields": "\n".join(
-                _field(signal.name, _type(signal), snippets.field_comment(signal.name, signal))
+                field_annotation(signal.name, signal_type(signal), snippets.field_comment(signal.name, signal))
                 for signal in fspa.signals
             ),
             "param_fields": "\n".join(
-                _field(param.name, "number?", snippets.field_comment(param.name, param)) for param in fspa.params
+                field_annotation(param.name, "number?", snippets.field_comment(param.name, param))
+                for param in fspa.params
             ),
             "signals": table_text(
                 [
-                    _row(signal, f"is_bool = {snippets.boolean_literal(signal.type == 'bool')}")
+                    declaration_row(signal, f"is_bool = {snippets.boolean_literal(signal.type == 'bool')}")
                     for signal in fspa.signals
                 ]
             ),
             "params": table_text(
-                [_row(param, f"value = {snippets.number_literal(param.value)}") for param in fspa.params]
+                [declaration_row(param, f"value = {snippets.number_literal(param.value)}") for param in fspa.params]
             ),
             "exclusive": table_text(
                 [f"{{ {', '.join(string_literal(self._names[atom]) for atom in group)} }}" for group in fspa.exclusive]
@@ -136,6 +146,10 @@ class _Source(StepCode):
             "states": LuaPrinter.block(self._states()),
             **self._state_tables(program_.tables),
             "returns": ", the progress of the step" if self._at_goal else "",
+            "and_limiting": ", the limiting atom, and what a step fails at"
+            if program_.failures
+            else " and the limiting atom",
+            "failures": failures_table(snippets.failure_texts(program_)),
             "moves": moves,
             "dt": f"{DT}, " if fspa.clock_varies else "",
             "length": "length_of(cells, first), " if fspa.clock_varies else "",
@@ -153,20 +167,25 @@ class _Source(StepCode):
             values = (
                 f'verdict = "{state.verdict}", accepting = {snippets.boolean_literal(state.accepting)}, ends = {ends}'
             )
-            label = f"label = {string_literal(str(state.label))}, " if tables is None else ""
-            rows.append(f"[{number}] = {{ {label}{values} }},")
+            if tables is None:
+                english = string_literal(label_text(self._fspa, index))
+                values = f"label = {string_literal(str(state.label))}, label_english = {english}, {values}"
+            rows.append(f"[{number}] = {{ {values} }},")
         return rows
 
     def _state_tables(self, tables: StateTables | None) -> dict[str, str]:
         """Return the pieces of the template with the tables of states; they are empty if there are none."""
         if tables is None:
-            return {"tables": "", "label_texts": ""}
+            return {"tables": "", "label_texts": "", "english_texts": ""}
         lines = [
             f"local {name.upper()} = {{{LuaPrinter.items(items_from_0(numbers))}}}"
             for name, numbers in tables.all_tables(self._fspa.judge).items()
         ]
-        texts = [f"{{ {', '.join(map(string_literal, pieces))} }}" for pieces in tables.labels.texts]
-        return {"tables": "\n".join(lines), "label_texts": table_text(texts)}
+        return {
+            "tables": "\n".join(lines),
+            "label_texts": label_texts_table(tables.labels),
+            "english_texts": label_texts_table(tables.labels_english),
+        }
 
     # --- the functions of states ------------------------------------------------------------------
 
@@ -177,7 +196,8 @@ class _Source(StepCode):
         does not depend on the edge that is taken.
         """
         progress = (states.PROGRESS,) if self._at_goal else ()
-        return ", ".join((states.TARGET, states.ROBUSTNESS, *progress, states.LIMITING))
+        failure = (states.FAILURE,) if self._program.failures else ()
+        return ", ".join((states.TARGET, states.ROBUSTNESS, *progress, states.LIMITING, *failure))
 
     def _parameters(self) -> str:
         """Return the parameters that the function of each state has, separated by commas.
@@ -268,7 +288,7 @@ class _Source(StepCode):
         return lines
 
     def _compute(self) -> list[str]:
-        return [*(["failure = nil"] if self._program.functions & FAILING else []), *super()._compute()]
+        return [*(["no_value = nil"] if self._program.functions & FAILING else []), *super()._compute()]
 
     def _range_check(self, index: int) -> list[str]:
         variable = self._printer.name(self._program.atoms[index])
@@ -299,7 +319,7 @@ class _Source(StepCode):
     def _failure(self, statements: Sequence[Statement], text: str) -> list[str]:
         """Return the code that ends a step if one of the statements failed; its message begins with ``text``."""
         fails = functions_called(statements) & FAILING
-        return [f"if failure then return nil, at_step(self, {string_literal(text)} .. failure) end"] if fails else []
+        return [f"if no_value then return nil, at_step(self, {string_literal(text)} .. no_value) end"] if fails else []
 
     def _check(self) -> list[str]:
         lines: list[str] = []
@@ -343,22 +363,21 @@ class _Source(StepCode):
 
     def _remember(self) -> list[str]:
         registers = zip(self._program.before, self._program.kept, strict=True)
-        return [f"{self._printer.name(before)} = {self._printer.text(kept, CHOICE)}" for before, kept in registers]
+        kept = [f"{self._printer.name(before)} = {self._printer.text(kept, CHOICE)}" for before, kept in registers]
+        return [*kept, *self._fail()]
+
+    def _fail(self) -> list[str]:
+        """Return the code that keeps what the trace fails at, at the first step at which it does."""
+        if not self._can_fail:
+            return []
+        if not self._program.failures:
+            # The trace has failed before it begins.
+            return [f"self._failed_step = self._failed_step or {reward_step.STEPS}"]
+        update = f"self._failed_step, self._failure = {reward_step.STEPS}, FAILURES[{states.FAILURE} + 1]"
+        return [f"if {states.FAILURE} then", f"  {update}", "end"]
 
 
 # --- pieces ---------------------------------------------------------------------------------------
-
-
-def _field(name: str, type_: str, doc: str) -> str:
-    """Return a comment ``---@field``, from which language servers read the type of a field of a class."""
-    description = f" {printable_line(doc)}" if doc else ""
-    return f"---@field {printable_line(table_key(name))} {type_}{description}"
-
-
-def _type(signal: Signal) -> str:
-    if signal.type == "bool":
-        return "boolean | 0 | 1"
-    return " | ".join(["number", *map(string_literal, signal.values)])
 
 
 def _accepting_cases(signal: Signal, variable: str) -> list[str]:
@@ -376,8 +395,3 @@ def _accepting_cases(signal: Signal, variable: str) -> list[str]:
     low = f"{variable} > -huge" if signal.low is None else f"{variable} >= {float(signal.low)!r}"
     high = f"{variable} < huge" if signal.high is None else f"{variable} <= {float(signal.high)!r}"
     return [f'if type({variable}) == "number" and {low} and {high} then', f"  {variable} = {variable} + 0.0"]
-
-
-def _row(field: Signal | Param, entries: str) -> str:
-    low, high = snippets.number_literal(field.low, "-huge"), snippets.number_literal(field.high, "huge")
-    return f"{{ name = {string_literal(field.name)}, {entries}, low = {low}, high = {high} }}"
