@@ -9,7 +9,6 @@ from __future__ import annotations
 import builtins
 import keyword
 from collections.abc import Sequence
-from math import inf
 from typing import Final
 
 from tltlc.automaton.finite.blowup import recursion_room
@@ -17,13 +16,20 @@ from tltlc.automaton.fspa import Fspa
 from tltlc.automaton.memory import Computation
 from tltlc.automaton.text import label_text
 from tltlc.backends import Files, Options, Target
+from tltlc.backends.languages.python_declarations import (
+    high_literal,
+    label_texts,
+    low_literal,
+    signal_row,
+    two_hold,
+    within,
+)
 from tltlc.backends.languages.python_syntax import PythonPrinter, long_dict, long_tuple, short_tuple, tuple_items
 from tltlc.backends.templates import fill_template, names_in
 from tltlc.program import reward_step, snippets, states
 from tltlc.program.arithmetic import with_declaration
 from tltlc.program.build import DT, program
 from tltlc.program.enums import enums_of, nested_enums, upper_case
-from tltlc.program.label_texts import LabelTexts
 from tltlc.program.names import call_lines, docstring_text, float_literal, string_literal
 from tltlc.program.nesting_limit import split_deep_values
 from tltlc.program.printer import CHOICE, Printer
@@ -109,18 +115,20 @@ class _Source:
             "about": docstring_text("\n\n".join(filter(None, (fspa.doc, f"{INDENT}{fspa.formula}")))),
             "file": self._file,
             "step": step,
-            "signals": long_tuple([_signal(signal) for signal in fspa.signals]),
+            "signals": long_tuple([signal_row(signal) for signal in fspa.signals]),
             "params": long_dict(
                 [
                     f"{string_literal(param.name)}: "
-                    f"({float_literal(param.value)}, {_low(param.low)}, {_high(param.high)})"
+                    f"({float_literal(param.value)}, {low_literal(param.low)}, {high_literal(param.high)})"
                     for param in fspa.params
                 ]
             ),
             "atoms": long_tuple([string_literal(atom.name) for atom in fspa.atoms]),
             "exclusive": long_tuple([short_tuple([str(atom) for atom in group]) for group in fspa.exclusive]),
             "returns": ", the progress of the step" if at_goal else "",
-            "and_failure": ", and an index into _FAILURES" if self._program.failures else "",
+            "and_limiting": ", the limiting atom, and an index into _FAILURES"
+            if self._program.failures
+            else " and the limiting atom",
             "failures": self._failures(),
             "states": f"\n\n{body}\n",
             "result": self._result,
@@ -133,6 +141,9 @@ class _Source:
                 "register_starts": short_tuple([float_literal(register.initial) for register in fspa.registers]),
             }
         pieces["slots"] = '"registers", ' if fspa.registers else ""
+        bools = [string_literal(signal.name) for signal in fspa.signals if signal.type == "bool"]
+        pieces["slot_of_sparse"] = '"_sparse", ' if bools else ""
+        pieces["false"] = long_dict([f"{name}: False" for name in bools])
         pieces["computed"] = "{_computed(index)}" if fspa.registers else "atom `{_ATOMS[index]}`"
         used = [_FUNCTIONS[function] for function in self._program.functions if function in _FUNCTIONS]
         fields: tuple[Signal | Param, ...] = (*fspa.signals, *fspa.params)
@@ -152,7 +163,7 @@ class _Source:
                     for signal in enum.signals
                 ]
             )
-        present = [*snippets.common_blocks(self._program), *(["enums"] if enums else [])]
+        present = [*snippets.common_blocks(self._program), *(["enums"] if enums else []), *(["bools"] if bools else [])]
         return fill_template("monitor.py.txt", pieces, present)
 
     def _enums(self) -> str:
@@ -166,11 +177,9 @@ class _Source:
 
     def _failures(self) -> str:
         """Return the table of what a step can fail at, which ends with the entry of a failure that has no cause."""
-        clauses = [None if clause is None else self._fspa.clauses[clause] for clause, _ in self._program.failures]
-        atoms = [None if atom is None else self._fspa.atoms[atom].name for _, atom in self._program.failures]
         rows = [
             short_tuple(["None" if text is None else string_literal(text) for text in row])
-            for row in zip((*clauses, None), (*atoms, None), strict=True)
+            for row in (*snippets.failure_texts(self._program), (None, None))
         ]
         return long_tuple(rows)
 
@@ -191,8 +200,8 @@ class _Source:
         return {
             "table": long_tuple([f"({self._verdict(state)})" for state in tables.kind_states]),
             "tables": "\n".join(lines),
-            "label_texts": _label_texts(tables.labels),
-            "english_texts": _label_texts(tables.labels_english),
+            "label_texts": label_texts(tables.labels),
+            "english_texts": label_texts(tables.labels_english),
         }
 
     def _verdict(self, state: int) -> str:
@@ -265,11 +274,13 @@ class _Source:
         if not self._program.signals:
             return [*lines, params] if self._program.params else lines
         signals = [*zip(self._fspa.signals, self._program.signals, strict=True)]
+        if any(signal.type == "bool" for signal in self._fspa.signals):
+            lines += ["if self._sparse:", f"{INDENT}signals = {{**_FALSE, **signals}}"]
         lines += ["try:"]
         lines += [f"{INDENT}{variable} = signals[{string_literal(signal.name)}]" for signal, variable in signals]
         lines += ["except KeyError:", f"{INDENT}raise self._missing(signals) from None"]
         for index, (signal, variable) in enumerate(signals):
-            checked = f"type({variable}) is not float or not {_within(signal, variable)}:"
+            checked = f"type({variable}) is not float or not {within(signal, variable)}:"
             if signal.type == "bool":
                 lines += [f"if type({variable}) is bool:", f"{INDENT}{variable} = 1.0 if {variable} else 0.0"]
                 lines.append(f"elif {checked}")
@@ -330,7 +341,7 @@ class _Source:
         lines: list[str] = []
         for index, group in self._program.exclusive:
             atoms = [self._program.atoms[atom] for atom in group]
-            lines += [f"if {_two_hold(atoms)}:", f"{INDENT}raise self._together({index}, {short_tuple(atoms)})"]
+            lines += [f"if {two_hold(atoms)}:", f"{INDENT}raise self._together({index}, {short_tuple(atoms)})"]
         return lines
 
     def _move(self) -> list[str]:
@@ -380,40 +391,3 @@ class _Source:
         """Return the code that keeps the values of the registers for the next sample."""
         values = [self._printer.text(value, CHOICE) for value in self._program.kept]
         return call_lines("self.registers = ", tuple_items(values)) if values else []
-
-
-# --- pieces ---------------------------------------------------------------------------------------
-
-
-def _within(signal: Signal, variable: str) -> str:
-    """Return a Python expression that is true if the float ``variable`` is finite and in the range of a signal."""
-    if signal.type == "bool":
-        return f"({variable} == 0.0 or {variable} == 1.0)"
-    low = f"-inf < {variable}" if signal.low is None else f"{float_literal(signal.low)} <= {variable}"
-    return f"{low} < inf" if signal.high is None else f"{low} <= {float_literal(signal.high)}"
-
-
-def _two_hold(atoms: Sequence[str]) -> str:
-    """Return a Python expression that is true if at least two of the atoms hold; it is fast if none holds."""
-    if len(atoms) > 8:
-        return f"sum(value > 0.0 for value in {short_tuple(atoms)}) > 1"
-    tests = [f"{atom} > 0.0" for atom in atoms]
-    later_tests = [" or ".join(tests[index + 1 :]) for index in range(len(tests) - 1)]
-    pairs = [f"({test} and {f'({rest})' if ' or ' in rest else rest})" for test, rest in zip(tests, later_tests)]  # noqa: B905
-    return " or ".join(pairs)
-
-
-def _label_texts(labels: LabelTexts) -> str:
-    return long_tuple([short_tuple([*map(string_literal, pieces)]) for pieces in labels.texts])
-
-
-def _signal(signal: Signal) -> str:
-    return f"({string_literal(signal.name)}, {signal.type == 'bool'}, {_low(signal.low)}, {_high(signal.high)})"
-
-
-def _low(low: float | None) -> str:
-    return "-inf" if low is None else float_literal(low)
-
-
-def _high(high: float | None) -> str:
-    return float_literal(inf if high is None else high)
