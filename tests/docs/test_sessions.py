@@ -76,7 +76,7 @@ def test_the_guide_to_explaining_runs(tmp_path: Path) -> None:
 
 
 def test_the_guide_to_recorded_play_runs(tmp_path: Path) -> None:
-    assert run_page((DOCS / "guides" / "recorded-play.md").read_text(encoding="utf-8"), Shell(tmp_path)) == 14
+    assert run_page((DOCS / "guides" / "recorded-play.md").read_text(encoding="utf-8"), Shell(tmp_path)) == 17
 
 
 def test_the_guide_to_play_without_an_end_runs(tmp_path: Path) -> None:

@@ -147,13 +147,19 @@ def test_any_bytes_are_read_or_rejected(data: bytes) -> None:
             assert error.diagnostics[0].code in ("TLT0620", "TLT0621", "TLT0622")
 
 
+OR_SPARSE = "use `tltlc monitor --sparse` if a missing bool counts as false"
+
+
 @pytest.mark.parametrize(
     ("header", "advice"),
     [
         ("falls_pit1,falls(pit2),falls(pit3)", "rename the column `falls_pit1` to `falls(pit1)`"),
         ("Falls (pit1),falls(pit2),falls(pit3)", "rename the column `Falls (pit1)` to `falls(pit1)`"),
-        ("falls_pit2,falls(pit3)", "its columns are `falls_pit2` and `falls(pit3)`"),
-        ("falls_pit4,falls(pit2),falls(pit3)", "its columns are `falls_pit4`, `falls(pit2)` and `falls(pit3)`"),
+        ("falls_pit2,falls(pit3)", f"its columns are `falls_pit2` and `falls(pit3)`; {OR_SPARSE}"),
+        (
+            "falls_pit4,falls(pit2),falls(pit3)",
+            f"its columns are `falls_pit4`, `falls(pit2)` and `falls(pit3)`; {OR_SPARSE}",
+        ),
         ("fals(pit1),falls(pit2),falls(pit3)", "did you mean the column `fals(pit1)`?"),
     ],
 )

@@ -17,6 +17,12 @@ SUGGESTIONS: Final = {
 }
 """The advice of each diagnostic about a sample, by its code."""
 
+MISSING_BOOLS: Final = (
+    "supply them at each step; if a missing bool counts as false, use `tltlc monitor --sparse` or"
+    " `Monitor(fspa, sparse=True)`"
+)
+"""The advice of TLT0611 if only bools are missing."""
+
 
 class MonitorError(TltlError):
     """Raised for a sample or param that the monitor cannot use.

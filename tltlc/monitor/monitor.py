@@ -10,10 +10,11 @@ from tltlc.automaton.fspa import Fspa, Verdict
 from tltlc.automaton.text import label_text
 from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.monitor.arguments import automaton_argument, reward_options_argument
+from tltlc.monitor.exclusive import check_exclusive
 from tltlc.monitor.failure import Failure, breaks, cause_of
 from tltlc.monitor.guards import bounding_atom, holds, robustness
 from tltlc.monitor.progress_and_reward import RewardOptions, RewardStep, reward_step
-from tltlc.monitor.samples import STEP_LENGTH, Samples, SampleValues, check_exclusive
+from tltlc.monitor.samples import STEP_LENGTH, Samples, SampleValues
 from tltlc.monitor.tables import tables
 
 _NOT_FAILED: Final[dict[str, Any]] = dict.fromkeys(("failed_clause", "failed_atom", "failed_step"))
@@ -60,7 +61,8 @@ class Monitor:
 
     ``fspa`` is the automaton (finite state predicate automaton). ``params`` maps names of params to
     values that replace the default ones, in SI units. ``reward`` says how steps are rewarded and
-    when episodes end. ``notices`` collects warnings about clamped values, one for each signal or
+    when episodes end. If the monitor is ``sparse``, samples have only the events that happened: a missing bool
+    counts as false, and is no error. ``notices`` collects warnings about clamped values, one for each signal or
     atom. After :meth:`step`, ``values`` has the values of the atoms at this sample, in the order of
     ``fspa.atoms``, ``registers`` has the values of its registers after the sample, and ``success`` is
     true if the episode has ended in success. ``failure`` says at which step the trace failed, and why; it
@@ -73,11 +75,16 @@ class Monitor:
     """
 
     def __init__(
-        self, fspa: Fspa, params: Mapping[str, float] | None = None, reward: RewardOptions | None = None
+        self,
+        fspa: Fspa,
+        params: Mapping[str, float] | None = None,
+        reward: RewardOptions | None = None,
+        *,
+        sparse: bool = False,
     ) -> None:
         self.fspa = automaton_argument(fspa)
         self.notices: list[Diagnostic] = []
-        self._samples = Samples(fspa, params, self.notices)
+        self._samples = Samples(fspa, params, self.notices, sparse=sparse)
         self._tables = tables(fspa)
         self._options = reward_options_argument(reward)
         self._labels: dict[int, tuple[str, str]] = {}

@@ -16,7 +16,7 @@ from tltlc.automaton.memory import given_atoms, registers_from_atoms, schedule
 from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.expression.python import compile_expressions
 from tltlc.expression.tree import AtomValue, Before, StepLength, VariableKey
-from tltlc.monitor.errors import SUGGESTIONS, MonitorError, sample_error, sample_place
+from tltlc.monitor.errors import MISSING_BOOLS, SUGGESTIONS, MonitorError, sample_error, sample_place
 from tltlc.resolve.computed_atoms import Computed, computed
 from tltlc.resolve.spec import Param, Signal
 
@@ -42,11 +42,14 @@ class Samples:
     the atoms that do not follow from others.
 
     ``params`` maps names of params to values that replace the default ones. A warning about a
-    clamped value is appended to ``notices``, at most one for each signal or atom.
+    clamped value is appended to ``notices``, at most one for each signal or atom. If they are ``sparse``,
+    samples have only the events that happened: a missing bool counts as false.
     """
 
-    def __init__(self, fspa: Fspa, params: Mapping[str, float] | None, notices: list[Diagnostic]) -> None:
-        self._fspa, self._notices = fspa, notices
+    def __init__(
+        self, fspa: Fspa, params: Mapping[str, float] | None, notices: list[Diagnostic], *, sparse: bool = False
+    ) -> None:
+        self._fspa, self._notices, self._sparse = fspa, notices, sparse
         self._names = tuple(signal.name for signal in fspa.signals)
         self._noticed: set[tuple[str, str]] = set()
         self.initial = tuple(register.initial for register in fspa.registers)
@@ -124,7 +127,7 @@ class Samples:
     ) -> SampleValues:
         missing = [name for name in self._names if name not in signals]
         if missing:
-            raise sample_error("TLT0611", when, f"no value for {name_list(missing)}")
+            signals = self._completed(signals, missing, when)
         sample = [
             self._signal_value(signal, name, signals[name], when)
             for signal, name in zip(self._fspa.signals, self._names, strict=True)
@@ -135,6 +138,17 @@ class Samples:
         return SampleValues(
             tuple(self._clamped_atom_value(index, value, when) for index, value in enumerate(values)), ()
         )
+
+    def _completed(
+        self, signals: Mapping[str, SupportsFloat | str], missing: Sequence[str], when: int | str
+    ) -> Mapping[str, SupportsFloat | str]:
+        """Return the signals with false for each of those that are missing; raise TLT0611 unless that is allowed."""
+        bools = {signal.name for signal in self._fspa.signals if signal.type == "bool"}
+        needed = [name for name in missing if not (self._sparse and name in bools)]
+        if needed:
+            advice = MISSING_BOOLS if bools.issuperset(needed) else None
+            raise sample_error("TLT0611", when, f"no value for {name_list(needed)}", advice)
+        return {**dict.fromkeys(missing, 0.0), **signals}
 
     def step_length(self, given: SupportsFloat | str | None, when: int | str) -> tuple[float, ...]:
         """Return the length of a step in seconds if the clock varies, else nothing.
@@ -323,18 +337,6 @@ def param_values(params: Sequence[Param], given: Mapping[str, float]) -> dict[st
 
 def _param_error(code: str, title: str, advice: str = "give a number in its range, in SI units") -> MonitorError:
     return MonitorError([Diagnostic(code, title, help=advice)])
-
-
-def check_exclusive(fspa: Fspa, values: Sequence[float], step: int) -> None:
-    """Raise MonitorError (TLT0614) if two atoms of an ``exclusive`` declaration hold at once.
-
-    ``values`` are the values of the atoms, and ``step`` is the number of the sample, from 1.
-    """
-    for group in fspa.exclusive:
-        holding = [fspa.atoms[atom].name for atom in group if values[atom] > 0.0]
-        if len(holding) > 1:
-            declaration = ", ".join(fspa.atoms[atom].name for atom in group)
-            raise sample_error("TLT0614", step, f"{name_list(holding)} hold at once, against `exclusive {declaration}`")
 
 
 def number_text(value: float) -> str:

@@ -26,6 +26,7 @@ TraceSample = dict[str, float]
 
 _NUMBER_HELP: Final = "write a number, `true` or `false`"
 _BOOL_HELP: Final = "write `true`, `false`, 1 or 0"
+_SPARSE: Final = "`tltlc monitor --sparse` if a missing bool counts as false"
 
 
 def read_trace(
@@ -36,6 +37,7 @@ def read_trace(
     kind: SourceKind = "file",
     *,
     clock_varies: bool = False,
+    sparse: bool = False,
 ) -> Iterator[TraceSample]:
     """Read a trace line by line, and yield for each sample the values of the given signals.
 
@@ -45,7 +47,8 @@ def read_trace(
     If ``clock_varies``, each sample has its time since the sample before under
     :data:`~tltlc.monitor.samples.STEP_LENGTH`, from the column ``dt``, or else from ``time``.
     Other columns are ignored. In JSON lines, values may be missing; in all traces, numbers may be
-    infinite or NaN. The monitor reports both.
+    infinite or NaN. The monitor reports both. If the trace is ``sparse``, it has only the events that
+    happened: a bool whose key, cell or column is missing is false.
 
     Raises:
         TltlError: TLT0620 the trace has no sample, TLT0621 it has no column for a signal, or for the
@@ -57,9 +60,9 @@ def read_trace(
     samples: Iterator[TraceSample] = iter(())
     times = SampleTimes(clock_s, clock_varies)
     if isinstance(trace, TraceTable):
-        samples = _table_samples(trace, lines, signals, times)
+        samples = _table_samples(trace, lines, signals, times, sparse)
     elif trace is not None:
-        samples = _object_samples(trace, lines, signals, times)
+        samples = _object_samples(trace, lines, signals, times, sparse)
     count = 0
     for count, sample in enumerate(samples, start=1):  # noqa: B007 (counts)
         yield sample
@@ -126,9 +129,9 @@ def _take_time(
 
 
 def _table_samples(
-    trace: TraceTable, lines: TraceLines, signals: Sequence[Signal], times: SampleTimes
+    trace: TraceTable, lines: TraceLines, signals: Sequence[Signal], times: SampleTimes, sparse: bool
 ) -> Iterator[TraceSample]:
-    columns = _columns(trace.header, lines, signals)
+    columns = _columns(trace.header, lines, signals, sparse)
     time = _time_column(trace.header, signals, times.varies)
     if time is None and times.varies:
         raise _no_time_error(lines)
@@ -136,30 +139,56 @@ def _table_samples(
     if time is not None and trace.header.count(time.name) > 1:
         raise lines.error(f"two columns are called `{time.name}`", help="keep one of them")
     for row in trace.rows:
-        sample = _row_sample(row, columns, lines)
+        sample = _row_sample(row, columns, lines, sparse)
         if time is not None and position is not None:
             _take_time(sample, cell_number(row[position]), time, times, lines, _cell_span(lines.text, position))
         yield sample
 
 
-def _columns(header: Sequence[str], lines: TraceLines, signals: Sequence[Signal]) -> list[tuple[Signal, int]]:
-    """Return each signal with the position of its column in the trace, from 0.
+def _columns(
+    header: Sequence[str], lines: TraceLines, signals: Sequence[Signal], sparse: bool
+) -> list[tuple[Signal, int | None]]:
+    """Return each signal with the position of its column in the trace, from 0; None for bools that are all false.
 
     Raises:
         TltlError: TLT0621 a signal has no column, TLT0622 a signal has two columns.
     """
     positions: dict[str, int] = {}
     twice = {name for position, name in enumerate(header) if positions.setdefault(name, position) != position}
-    missing = [signal.name for signal in signals if signal.name not in positions]
+    missing = [signal for signal in signals if signal.name not in positions]
+    if sparse:
+        # A column with a similar name is a typing error, and not an event that never happened.
+        missing = [
+            signal for signal in missing if not _is_bool(signal) or _advice_on_column(signal, header, lines, signals)
+        ]
     if missing:
-        title = f"the trace has no column for {name_list(missing)}"
-        listing = f"its columns are {name_list(header[:10])}" + (", …" if len(header) > 10 else "")
-        advice = _format_advice(lines.text, header) or _suggestion(missing[0], header, signals) or listing
-        raise TltlError([Diagnostic("TLT0621", title, (lines.label(""),), advice)])
+        raise _missing_columns_error(missing, header, lines, signals)
     for signal in signals:
         if signal.name in twice:
             raise lines.error(f"two columns are called `{signal.name}`", help="keep one of them")
-    return [(signal, positions[signal.name]) for signal in signals]
+    return [(signal, positions.get(signal.name)) for signal in signals]
+
+
+def _missing_columns_error(
+    missing: Sequence[Signal], header: Sequence[str], lines: TraceLines, signals: Sequence[Signal]
+) -> TltlError:
+    title = f"the trace has no column for {name_list([signal.name for signal in missing])}"
+    advice = _advice_on_column(missing[0], header, lines, signals)
+    if advice is None:
+        advice = f"its columns are {name_list(header[:10])}" + (", …" if len(header) > 10 else "")
+        advice += f"; use {_SPARSE}" if all(map(_is_bool, missing)) else ""
+    return TltlError([Diagnostic("TLT0621", title, (lines.label(""),), advice)])
+
+
+def _advice_on_column(
+    signal: Signal, header: Sequence[str], lines: TraceLines, signals: Sequence[Signal]
+) -> str | None:
+    """Return advice if the header is wrong, or has a column that is meant for a signal without one; else None."""
+    return _format_advice(lines.text, header) or _suggestion(signal.name, header, signals)
+
+
+def _is_bool(signal: Signal) -> bool:
+    return signal.type == "bool"
 
 
 def _format_advice(line: str, header: Sequence[str]) -> str | None:
@@ -193,14 +222,20 @@ def _letters(name: str) -> str:
     return "".join(character for character in name.lower() if character.isalnum())
 
 
-def _row_sample(row: Sequence[str], columns: Sequence[tuple[Signal, int]], lines: TraceLines) -> TraceSample:
+def _row_sample(
+    row: Sequence[str], columns: Sequence[tuple[Signal, int | None]], lines: TraceLines, sparse: bool
+) -> TraceSample:
     sample = {}
     for signal, column in columns:
+        if column is None or (sparse and not row[column] and _is_bool(signal)):
+            sample[signal.name] = 0.0
+            continue
         value = _named_value(signal, row[column].strip(" \t"))
         value = cell_number(row[column]) if value is None else value
         if value is None or not _is_allowed(signal, value):
             message = _problem(signal, value, row[column]) if row[column] else f"`{signal.name}` has no value"
-            raise lines.error(message, _cell_span(lines.text, column), _advice(signal))
+            advice = f"{_BOOL_HELP}, or use {_SPARSE}" if _is_bool(signal) and not row[column] else _advice(signal)
+            raise lines.error(message, _cell_span(lines.text, column), advice)
         sample[signal.name] = value
     return sample
 
@@ -211,7 +246,7 @@ def _named_value(signal: Signal, name: str) -> float | None:
 
 
 def _is_allowed(signal: Signal, value: float) -> bool:
-    return signal.type != "bool" or value in (0.0, 1.0)
+    return not _is_bool(signal) or value in (0.0, 1.0)
 
 
 def _problem(signal: Signal, value: float | None, given: object) -> str:
@@ -224,7 +259,7 @@ def _problem(signal: Signal, value: float | None, given: object) -> str:
 def _advice(signal: Signal) -> str:
     if signal.values:
         return values_advice(signal)
-    return _BOOL_HELP if signal.type == "bool" else _NUMBER_HELP
+    return _BOOL_HELP if _is_bool(signal) else _NUMBER_HELP
 
 
 def _cell_span(line: str, column: int) -> tuple[int, int] | None:
@@ -243,11 +278,11 @@ def _cell_span(line: str, column: int) -> tuple[int, int] | None:
 
 
 def _object_samples(
-    trace: TraceObjects, lines: TraceLines, signals: Sequence[Signal], times: SampleTimes
+    trace: TraceObjects, lines: TraceLines, signals: Sequence[Signal], times: SampleTimes, sparse: bool
 ) -> Iterator[TraceSample]:
     first: _TimeColumn | None = None
     for number, object_ in enumerate(trace.rows):
-        sample = _object_sample(object_, signals, lines)
+        sample = _object_sample(object_, signals, lines, sparse)
         column = _time_column(object_, signals, times.varies)
         if number == 0:
             first = column
@@ -266,11 +301,15 @@ def _object_samples(
         yield sample
 
 
-def _object_sample(object_: Mapping[str, Any], signals: Sequence[Signal], lines: TraceLines) -> TraceSample:
+def _object_sample(
+    object_: Mapping[str, Any], signals: Sequence[Signal], lines: TraceLines, sparse: bool
+) -> TraceSample:
     sample = {}
     for signal in signals:
         given = object_.get(signal.name)
         if given is None:
+            if sparse and _is_bool(signal):
+                sample[signal.name] = 0.0
             continue  # the monitor reports missing values
 
         number = _named_value(signal, given) if isinstance(given, str) else None

@@ -12,8 +12,9 @@ from tltlc.automaton.work import Work
 from tltlc.core.record import replace
 from tltlc.logic.formula import Formula, and_, atom, not_, or_
 from tltlc.monitor.errors import MonitorError
+from tltlc.monitor.exclusive import check_exclusive
 from tltlc.monitor.guards import holds
-from tltlc.monitor.samples import Samples, check_exclusive
+from tltlc.monitor.samples import Samples
 from tltlc.resolve.sources import names_read
 
 _STEP_WORK: Final = 40

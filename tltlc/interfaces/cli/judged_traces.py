@@ -33,12 +33,13 @@ class JudgeOptions:
     """The options of ``tltlc monitor`` for many traces.
 
     ``workers`` is the number of processes; None for the default. ``episodes`` says whether a trace
-    is judged only up to the goal, a violation or the limit (``--episodes``). ``as_json`` says whether
-    to print a JSON document (``--json``).
+    is judged only up to the goal, a violation or the limit (``--episodes``). ``sparse`` says whether a
+    missing bool counts as false (``--sparse``). ``as_json`` says whether to print a JSON document (``--json``).
     """
 
     workers: int | None
     episodes: bool
+    sparse: bool
     as_json: bool
 
 
@@ -63,7 +64,14 @@ def judge_traces(
         report.add(files.errors)
         if files.others:
             report.say(_others_text(files.others))
-        judged = judge_files(fspa, spec_input.clauses(), files.traces, options.workers, episodes=options.episodes)
+        judged = judge_files(
+            fspa,
+            spec_input.clauses(),
+            files.traces,
+            options.workers,
+            episodes=options.episodes,
+            sparse=options.sparse,
+        )
         show = _show_json if options.as_json else _show_lines
         try:
             with closing(judged):

@@ -10,7 +10,8 @@ from typing import Final
 from tltlc.automaton.fspa import Fspa
 from tltlc.core.record import EMPTY
 from tltlc.monitor import Monitor, MonitorError
-from tltlc.monitor.samples import STEP_LENGTH, Samples, check_exclusive
+from tltlc.monitor.exclusive import check_exclusive
+from tltlc.monitor.samples import STEP_LENGTH, Samples
 from tltlc.monitor.traces import read_trace
 from tltlc.resolve.spec import Signal
 from tltlc.tools.conformance.draw import Draw

@@ -38,14 +38,22 @@ class Judge:
     :class:`~tltlc.tools.judge.verdict.RejectionCause` in the result names those of ``clauses`` that the
     trace breaks or does not meet. If ``clauses`` is None, no clauses are named. With
     ``episodes``, a trace is judged as an episode: the samples after the goal, after a
-    violation, or after the step limit of the spec do not count. With ``details``, each verdict also has
+    violation, or after the step limit of the spec do not count. With ``sparse``, a bool that a trace does not
+    have counts as false. With ``details``, each verdict also has
     :class:`~tltlc.tools.judge.verdict.TraceDetails`: how the trace moved through the automaton.
     """
 
     def __init__(
-        self, fspa: Fspa, clauses: Clauses | None = None, *, episodes: bool = False, details: bool = False
+        self,
+        fspa: Fspa,
+        clauses: Clauses | None = None,
+        *,
+        episodes: bool = False,
+        details: bool = False,
+        sparse: bool = False,
     ) -> None:
         self._fspa, self._clauses, self._episodes, self._with_details = fspa, clauses, episodes, details
+        self._sparse = sparse
         self._runner = TraceRunner(fspa, episodes=episodes)
         self._clause_runners = [TraceRunner(part.fspa) for part in clauses.parts] if clauses else []
         self._joint_runners: dict[tuple[int, ...], TraceRunner | None] = {}
@@ -67,7 +75,14 @@ class Judge:
             if plain is None:
                 # This keeps the samples before an error.
                 fspa = self._fspa
-                read = read_trace(io.BytesIO(text), name, fspa.signals, fspa.clock_s, clock_varies=fspa.clock_varies)
+                read = read_trace(
+                    io.BytesIO(text),
+                    name,
+                    fspa.signals,
+                    fspa.clock_s,
+                    clock_varies=fspa.clock_varies,
+                    sparse=self._sparse,
+                )
                 samples.extend(steps.watched(read))
             samples = plain or samples
             run, warnings = self._runner.run(samples)

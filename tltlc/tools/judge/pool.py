@@ -44,12 +44,13 @@ def judge_files(
     *,
     episodes: bool = False,
     details: bool = False,
+    sparse: bool = False,
 ) -> Generator[JudgedTrace]:
     """Judge the traces in these files, and yield the results in the order of ``paths``.
 
     ``workers`` is the number of worker processes. With 1, this process judges the traces itself.
-    The default is one worker for each core, but 1 for fewer than ``_FEW`` traces. ``episodes`` and
-    ``details`` are as for :class:`~tltlc.tools.judge.judge.Judge`. Closing the iterator ends the
+    The default is one worker for each core, but 1 for fewer than ``_FEW`` traces. ``episodes``,
+    ``details`` and ``sparse`` are as for :class:`~tltlc.tools.judge.judge.Judge`. Closing the iterator ends the
     workers. A file that cannot be read gets a result without a verdict.
 
     Raises:
@@ -58,10 +59,11 @@ def judge_files(
     if workers is None:
         workers = _cores() if len(paths) >= _FEW else 1
     workers = min(workers, len(paths), _MOST_WORKERS)
+    options = {"episodes": episodes, "details": details, "sparse": sparse}
     if workers > 1:
-        yield from _judge_in_workers(paths, workers, fspa, clauses, episodes=episodes, details=details)
+        yield from _judge_in_workers(paths, workers, fspa, clauses, **options)
         return
-    judge = Judge(fspa, clauses, episodes=episodes, details=details)
+    judge = Judge(fspa, clauses, **options)
     for path in paths:
         yield _judge_file(judge, path)
 

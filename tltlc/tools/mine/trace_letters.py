@@ -12,7 +12,8 @@ from tltlc.core.record import record
 from tltlc.core.source import SourceKind
 from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.monitor.errors import MonitorError
-from tltlc.monitor.samples import STEP_LENGTH, Samples, check_exclusive
+from tltlc.monitor.exclusive import check_exclusive
+from tltlc.monitor.samples import STEP_LENGTH, Samples
 from tltlc.monitor.traces import TraceSample, in_trace, read_trace
 from tltlc.resolve.spec import Signal
 from tltlc.tools.mine.evidence import LabelledTrace

@@ -16,8 +16,9 @@ from typing import TYPE_CHECKING, Final, NamedTuple, Union
 from tltlc.automaton.fspa import Fspa
 from tltlc.core.record import record
 from tltlc.monitor import MonitorError
+from tltlc.monitor.exclusive import check_exclusive
 from tltlc.monitor.guards import holds
-from tltlc.monitor.samples import Samples, check_exclusive
+from tltlc.monitor.samples import Samples
 from tltlc.tools.witness.step_lengths import (
     length_names,
     length_of,

@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING
 from tltlc.automaton.fspa import Fspa, Implicant
 from tltlc.core.record import record
 from tltlc.monitor import MonitorError
-from tltlc.monitor.samples import STEP_LENGTH, Samples, check_exclusive, number_text
+from tltlc.monitor.exclusive import check_exclusive
+from tltlc.monitor.samples import STEP_LENGTH, Samples, number_text
 from tltlc.resolve.spec import Signal
 from tltlc.tools.witness.search import AtomGroup, SignalPoint, atom_groups
 

@@ -60,6 +60,11 @@ Examples:
     help="Judge each trace as an episode, which ends at the goal, at a violation or at the limit. Implies --summary.",
 )
 @click.option(
+    "--sparse",
+    is_flag=True,
+    help="Count a bool that a sample does not have as false: for traces that have only the events that happened.",
+)
+@click.option(
     "--workers",
     metavar="N",
     type=WholeRange(1, 1000),
@@ -73,6 +78,7 @@ def command(
     as_table: bool | None,
     summary: bool,
     episodes: bool,
+    sparse: bool,
     workers: int | None,
     settings: CompileSettings,
     format: str,  # noqa: A002
@@ -97,15 +103,23 @@ def command(
     if len(traces) == 1 and not (summary or episodes) and (traces[0] == STDIN or not is_dir(traces[0])):
         as_table = sys.stdout.isatty() if as_table is None else as_table
         output: Output = "json" if as_json else "table" if as_table else "csv"
-        return _judge_steps(spec, traces[0], settings, format, output)
+        return _judge_steps(spec, traces[0], settings, format, output, sparse=sparse)
     if STDIN in traces:
         raise click.UsageError("a summary needs traces in files, not standard input", click.get_current_context())
     from tltlc.interfaces.cli.judged_traces import JudgeOptions, judge_traces
 
-    return judge_traces(spec, traces, JudgeOptions(workers, episodes, as_json), settings, format)
+    return judge_traces(spec, traces, JudgeOptions(workers, episodes, sparse, as_json), settings, format)
 
 
-def _judge_steps(spec: str, trace: str, settings: CompileSettings, format: str, output: Output) -> int:  # noqa: A002
+def _judge_steps(
+    spec: str,
+    trace: str,
+    settings: CompileSettings,
+    format: str,  # noqa: A002
+    output: Output,
+    *,
+    sparse: bool,
+) -> int:
     """Judge one trace, and print a row for each step while reading it; return the exit status."""
     from tltlc.monitor import Monitor
     from tltlc.monitor.long_steps import LongSteps, shortest_time
@@ -127,6 +141,7 @@ def _judge_steps(spec: str, trace: str, settings: CompileSettings, format: str, 
                 fspa.clock_s,
                 input_kind(trace),
                 clock_varies=fspa.clock_varies,
+                sparse=sparse,
             )
             failing = FailingStep(monitor, _clause_places(spec_input))
             rows = run(monitor, failing.watched(steps.watched(samples)))
