@@ -264,7 +264,7 @@ const name: string = same.limiting;
 // @ts-expect-error: a verdict is one of four.
 if (verdict === "unknown") throw new MonitorError("never");
 const failed: [string, string | null, string | null, number | null] =
-  [same.labelEnglish, same.failedClause, same.failedAtom, same.failedStep];
+  [same.label_english, same.failed_clause, same.failed_atom, same.failed_step];
 export { failed, limiting, name, params };
 """
 

@@ -139,7 +139,7 @@ for i in range(620): print("@", monitor.step({"pit": i in (0, 610, 612)}).label)
 
 
 IN_WORDS: Final = {
-    "javascript": (".label)", ".labelEnglish)"),
+    "javascript": (".label)", ".label_english)"),
     "lua": (".label)", ".label_english)"),
     "python": (".label)", ".label_english)"),
 }

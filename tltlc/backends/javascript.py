@@ -202,7 +202,7 @@ class _Source(StepCode):
             values = f'verdict: "{state.verdict}", accepting: {snippets.boolean_literal(state.accepting)}, ends: {ends}'
             if tables is None:
                 english = string_literal(label_text(self._fspa, index))
-                values = f"label: {string_literal(str(state.label))}, labelEnglish: {english}, {values}"
+                values = f"label: {string_literal(str(state.label))}, label_english: {english}, {values}"
             rows.append(f"{{ {values} }}")
         return rows
 
