@@ -175,7 +175,7 @@ def _order_meaning(clause: str, word: str, left: Here, *, is_negated: bool) -> H
         return (at_every_step(either(negation(b), at_every_step(wanted))),)
     if word == "followed by" and clause == "keep":
         return either(negation(left), at_some_step(b, 1))
-    if is_negated:
+    if is_negated or (word == "before" and clause == "reach"):
         return None
     first, second = (b, left) if word == "after" else (left, b)
     order = both(first, at_some_step(second, 1))
@@ -188,7 +188,8 @@ def time_meaning(clause: str, prefix: str, word: str) -> Whole | None:
         in_order = both(c, at_some_step(a, 1, STEPS))
         if clause in ("avoid", "require") and word in ("within", "in"):
             return clause_meaning("reach" if clause == "require" else clause, in_order)
-        return _next_goal_meaning(word) if clause == "reach" else None
+        # A time behind the second goal may count from any step with c, or from where c begins.
+        return _next_goal_meaning(word) if clause == "reach" and word in ("for", "after") else None
     if clause == "avoid" and word == "for":
         # It may be about the first steps, or about steps on end.
         return None
@@ -200,7 +201,10 @@ def time_meaning(clause: str, prefix: str, word: str) -> Whole | None:
     if clause == "keep" and word == "for" and prefix == "c implies ":
         # The time counts from the step of c on.
         return clause_meaning(clause, with_prefix(prefix, at_every_step(a, 0, STEPS - 1)))
-    has_form = clause in ("reach", "avoid") or (clause == "keep" and word in ("for", "after"))
+    if clause == "keep" and word == "for":
+        # It may be about the first steps, or about some steps on end.
+        return None
+    has_form = clause in ("reach", "avoid") or (clause == "keep" and word == "after")
     if has_form:
         return (
             clause_meaning("require", _time_in_clause(clause, word, with_prefix(prefix, a)))
@@ -244,7 +248,9 @@ def prefix_meaning(clause: str, prefix: str, word: str) -> Whole | None:
 
 def prefix_time_meaning(clause: str, prefix: str, word: str) -> Whole | None:
     """The meaning of `CLAUSE PREFIX WORD TIME a`."""
-    if not prefix or (prefix == "c then " and clause == "reach"):
+    if prefix == "c then " and clause == "reach":
+        return _next_goal_meaning(word)
+    if not prefix:
         return time_meaning(clause, prefix, word)
     if prefix == "c implies " and (clause == "require" or (clause == "keep" and word != "after")):
         return clause_meaning(clause, with_prefix(prefix, _time_in_clause("", word, a)))

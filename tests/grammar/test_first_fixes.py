@@ -44,6 +44,23 @@ def first_error(clause: str, declarations: str = "platformer") -> Diagnostic:
         ("keep coins never decrease", "avoid coins < previous(coins)"),
         ("reach coins >= 100 and no damaged", "reach coins >= 100 avoid damaged"),
         ("unless has_key, never at_door", "keep at_door implies has_key"),
+        ("after damaged reach checkpoint within 10 s", "keep damaged implies eventually within 10 s checkpoint"),
+        ("if damaged then reach checkpoint within 8 s", "keep damaged implies eventually within 8 s checkpoint"),
+        ("when damaged reach not damaged within 8 s", "keep damaged implies eventually within 8 s not damaged"),
+        ("whenever damaged, checkpoint within 8 s", "keep damaged implies eventually within 8 s checkpoint"),
+        (
+            "after died reach checkpoint or not died within 10 s",
+            "keep died implies eventually within 10 s (checkpoint or not died)",
+        ),
+        ("after boss_dead keep health > 0", "keep boss_dead implies always health > 0"),
+        ("after boss_dead, keep health > 0", "keep boss_dead implies always health > 0"),
+        ("once boss_dead keep health > 0", "keep boss_dead implies always health > 0"),
+        ("after coins >= 30 keep health > 0", "keep coins >= 30 implies always health > 0"),
+        ("after damaged, keep invulnerable for 1 s", "keep damaged implies always for 1 s invulnerable"),
+        ("avoid damaged then damaged within 2 s", "avoid (begins damaged) then within 2 s (begins damaged)"),
+        ("at most 3 times died", "keep times(died) <= 3"),
+        ("keep coins is three", "keep coins == 3"),
+        ("avoid coins is not three", "avoid coins != 3"),
     ],
 )
 def test_the_first_fix_has_the_meaning(typed: str, meant: str) -> None:
@@ -67,12 +84,54 @@ def test_the_first_fix_has_the_meaning(typed: str, meant: str) -> None:
         "must has_key",
         "never has_key or at_door",
         "never invulnerable for 3 s",
+        "keep invulnerable for 3 s",
+        "reach has_key then at_door within 90 s",
+        "reach coins >= 30 before at_door",
+        "when damaged then not damaged within 8 s",
+        "after boss_dead reach at_exit",
+        "after boss_dead keep damaged at most 3 times",
+        "after boss_death keep health > 0",
+        "while damaged reach at_door",
+        "times(died) <= 2 within 5 s",
+        "reach at most 50 coins",
+        "the player must reach at most 50 coins",
+        "coins is three",
     ],
 )
 def test_a_clause_with_two_readings_gets_no_fix(typed: str) -> None:
     error = first_error(typed)
     assert error.fixes == ()
     assert error.help
+
+
+@pytest.mark.parametrize("word", ["after", "once"])
+def test_a_sentence_that_begins_with_an_event_gets_the_clauses_for_it(word: str) -> None:
+    for typed in (f"{word} boss_dead keep damaged at most 3 times", f"{word} boss_death reach at_exit"):
+        help_ = first_error(typed).help or ""
+        assert "implies always a` for" in help_ or "implies eventually" in help_
+
+
+def test_a_value_that_an_enum_lacks_gets_its_values() -> None:
+    assert first_error("light is blu", "puzzle").help == (
+        "`light` has no value `blu`: its values are `red`, `green`, `blue`"
+    )
+
+
+@pytest.mark.parametrize(
+    "typed",
+    [
+        "avoid died more than 3 times",
+        "after damaged keep invulnerable for 1 s",
+        "at most 3 times died",
+        "the player must reach has_key",
+        "reach has_key within 5 s",
+        "reach at least 5 coins",
+    ],
+)
+def test_what_is_underlined_is_what_the_first_fix_replaces(typed: str) -> None:
+    error = first_error(typed)
+    (edit,) = error.fixes[0].edits
+    assert error.labels[0].span == edit.span
 
 
 @pytest.mark.parametrize(

@@ -51,8 +51,8 @@ def fixed_text(text: str) -> str:
         # A time.
         ("reach a within 20 steps", "require eventually within 20 steps a"),
         ("reach a and b in 5 seconds", "require eventually within 5 s (a and b)"),
-        ("reach a then b within 20 steps", "reach a then within 20 steps b"),
-        ("reach a or b then c within 20 steps", "reach (a or b) then within 20 steps c"),
+        ("reach begins a then b within 20 steps", "reach begins a then within 20 steps b"),
+        ("reach a then in 20 steps b", "reach a then within 20 steps b"),
         ("reach once a within 20 steps", "reach once within 20 steps a"),
         ("keep b implies once a within 8 s", "keep b implies once within 8 s a"),
         ("keep b implies historically a for 8 s", "keep b implies historically for 8 s a"),
@@ -69,7 +69,6 @@ def fixed_text(text: str) -> str:
         ("require a and if b, c", "require a and (b implies c)"),
         ("reach if a then b then c", "reach a and b then c"),
         ("reach a after 3 steps", "require next after 3 steps eventually a"),
-        ("keep a for 20 steps", "require always for 20 steps a"),
         ("keep a implies b within 20 steps", "keep a implies eventually within 20 steps b"),
         ("keep a implies b for 20 steps", "keep a implies always for 20 steps b"),
         ("require always (a -> b for 20 steps)", "require always (a -> always for 20 steps b)"),

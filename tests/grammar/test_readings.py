@@ -93,7 +93,7 @@ def check(clause: str, meaning: Meaning) -> None:
             assert step.accepting == meaning(trace[:stop]), (clause, trace[:stop])
 
 
-READINGS: Mapping[str, tuple[Meaning, Meaning]] = {
+READINGS: Mapping[str, tuple[Meaning, ...]] = {
     "keep a for the last 2 s": (lambda t: all(a(t)), lambda t: len(t) > 2 and all(a(t)[-3:])),
     "keep (a for the last 2 s)": (lambda t: all(a(t)), lambda t: len(t) > 2 and all(a(t)[-3:])),
     "require a for the last 2 steps": (lambda t: all(a(t)), lambda t: all(a(t)[-2:])),
@@ -110,6 +110,33 @@ READINGS: Mapping[str, tuple[Meaning, Meaning]] = {
     "keep after a, mode is not alert within 2 s": (is_absent, stops),
     "keep if a, (not b) within 2 s": (is_absent, stops),
     "keep within 2 s after a, (not b)": (is_absent, stops),
+    "after a, not b within 2 s": (is_absent, stops),
+    "keep whenever a, not b within 2 s": (is_absent, stops),
+    "keep if a then not b within 2 s": (is_absent, stops),
+    "when a, mode is not alert within 2 s": (is_absent, stops),
+    "keep a for 2 s": (lambda t: lasts(a(t), 3), lambda t: all(a(t)[:2])),
+    "keep for 2 s a": (lambda t: lasts(a(t), 3), lambda t: all(a(t)[:2])),
+    "keep not a for 2 s": (
+        lambda t: lasts([not now for now in a(t)], 3),
+        lambda t: not any(a(t)[:2]),
+    ),
+    "keep a and b for 2 s": (lambda t: lasts(both(a(t), b(t)), 3), lambda t: all(both(a(t), b(t))[:2])),
+    "keep a for 3 steps": (lambda t: lasts(a(t), 3), lambda t: all(a(t)[:3])),
+    "reach a then b within 2 s": (
+        lambda t: follows([now and not (i and a(t)[i - 1]) for i, now in enumerate(a(t))], b(t)),
+        lambda t: follows(a(t), b(t)),
+    ),
+    "reach a before b": (
+        lambda t: any(a(t)) and not any(b(t)[: a(t).index(True)]),
+        lambda t: not any(b(t)[: a(t).index(True)]) if any(a(t)) else not any(b(t)),
+        lambda t: any(now and any(b(t)[i + 1 :]) for i, now in enumerate(a(t))),
+    ),
+    "reach at most 1 phase": (lambda t: not any(b(t)), lambda t: not all(b(t))),
+    "reach phase no more than 1": (lambda t: not any(b(t)), lambda t: not all(b(t))),
+    "after a reach b": (
+        lambda t: all(any(b(t)[i:]) for i, now in enumerate(a(t)) if now),
+        lambda t: any(now and any(b(t)[i + 1 :]) for i, now in enumerate(a(t))),
+    ),
     "avoid a for 3 s": (lambda t: not any(a(t)[:3]), lambda t: not lasts(a(t), 4)),
     "never a for 3 s": (lambda t: not any(a(t)[:3]), lambda t: not lasts(a(t), 4)),
     "avoid a for 3 steps": (lambda t: not any(a(t)[:3]), lambda t: not lasts(a(t), 3)),
@@ -129,7 +156,7 @@ READINGS: Mapping[str, tuple[Meaning, Meaning]] = {
 
 
 @pytest.mark.parametrize(("clause", "readings"), READINGS.items(), ids=READINGS)
-def test_each_reading_has_the_meaning_that_the_help_says(clause: str, readings: tuple[Meaning, Meaning]) -> None:
+def test_each_reading_has_the_meaning_that_the_help_says(clause: str, readings: tuple[Meaning, ...]) -> None:
     clauses = [text for text in quoted(clause) if text.startswith(KEYWORDS)]
     assert len(clauses) == len(readings)
     for text, meaning in zip(clauses, readings, strict=True):

@@ -6,8 +6,10 @@ from collections.abc import Mapping
 from typing import Final
 
 from tltlc.diagnostics.diagnostic import Diagnostic
+from tltlc.grammar.lexer import END
 from tltlc.grammar.mistakes.counts_in_words import COMPARISONS
 from tltlc.grammar.mistakes.declared_names import declared_names
+from tltlc.grammar.mistakes.english_rewrite import clause_keyword
 from tltlc.grammar.mistakes.parse_failure import ParseFailure, quote_token
 from tltlc.grammar.mistakes.rephrasing import (
     formula_start,
@@ -59,6 +61,13 @@ def comparison_in_words(failure: ParseFailure) -> Diagnostic | None:
             if kind not in ("int", "enum"):
                 continue
             sign = sign if kind == "int" else "is" if sign == "==" else "is not"
+        first = operand_start(failure.tokens, at)
+        is_end = at + length + 1 < len(failure.tokens) and failure.tokens[at + length + 1].type == END
+        is_goal = clause_keyword(failure) == "reach" and first == formula_start(failure) and is_end
+        # `reach health below 20` is a goal; `reach coins at most 50` may be a rule.
+        if is_goal and sign == "<=" and value == "NUMBER":
+            title, number = f"{quote_token(failure.token)} is not an operator", failure.tokens[at + length].text
+            return _small_goal(failure, text_of(failure, 1, at), sign, number, title)
         if value == "NUMBER" or (value == "NAME" and phrase[0] not in ("at", "up")):
             title, span = f"{quote_token(failure.token)} is not an operator", span_of(failure.tokens[at : at + length])
             return failure.error("TLT0101", title, f"write `{sign}`", span=span, write=sign)
@@ -69,6 +78,13 @@ def _type_before(failure: ParseFailure, stop: int) -> str:
     """Return the declared type of the name before an index, or "" if there is none."""
     start = operand_start(failure.tokens, stop)
     return "" if start is None else declared_names(failure.source).type_of(failure.tokens[start].text)
+
+
+def _small_goal(failure: ParseFailure, value: str, sign: str, number: str, title: str) -> Diagnostic:
+    """Return the error for `reach at most 50 coins`, which the first step may meet."""
+    text = f"{value} {sign} {number}"
+    help_ = f"write `keep {text}` if it must hold at every step, `reach {text}` if one step with it is enough"
+    return failure.error("TLT0101", title, help_, span=span_of(failure.tokens[:-1]))
 
 
 def _number_first(failure: ParseFailure) -> Diagnostic | None:
@@ -82,6 +98,9 @@ def _number_first(failure: ParseFailure) -> Diagnostic | None:
         sign, title = COMPARISONS[phrase], f"{quote_token(tokens[start])} is not an operator"
         stop = operand_end(tokens, number + 1)
         is_compared = stop is not None and declared_names(failure.source).type_of(tokens[number + 1].text) in _NUMBERS
+        is_goal = clause_keyword(failure) == "reach" and start == formula_start(failure)
+        if stop is not None and is_compared and is_goal and sign in ("<=", "<") and tokens[stop].type == END:
+            return _small_goal(failure, text_of(failure, number + 1, stop), sign, tokens[number].text, title)
         if stop is not None and is_compared:
             text = f"{text_of(failure, number + 1, stop)} {sign} {tokens[number].text}"
             return suggest_rewrite(failure, start, stop, text, title)

@@ -45,6 +45,7 @@ _CLAUSES: Final = {
 `keep … at least` would have to hold at the first step, too, and `reach … at most` always holds there:
 for these, the other clause is meant.
 """
+COUNT_ELSEWHERE: Final = "let the game count within a time, and supply the number"
 _TWICE: Final = ((">=", "2"), (">", "1"))
 _AT_MOST_ONCE: Final = (("<=", "1"), ("<", "2"))
 
@@ -184,7 +185,7 @@ def _within_time(keyword: str, operand: str, sign: str, count: _Count, head: str
     clause = _again_within(keyword, operand, sign, count, head)
     if clause:
         return f"write `{clause}`"
-    return f"`times({operand})` counts from the first step on: let the game count within a time, and supply the number"
+    return f"`times({operand})` counts from the first step on: {COUNT_ELSEWHERE}"
 
 
 def _again_within(keyword: str, operand: str, sign: str, count: _Count, head: str) -> str:

@@ -19,11 +19,18 @@ from tltlc.grammar.mistakes.english_forms import (
     Form,
     Forms,
 )
-from tltlc.grammar.mistakes.english_rewrite import Parts, clause_keyword, goal_starts, kept_before_help, rewrite_error
+from tltlc.grammar.mistakes.english_rewrite import (
+    Parts,
+    clause_keyword,
+    goal_starts,
+    kept_before_help,
+    reached_before_help,
+    rewrite_error,
+)
 from tltlc.grammar.mistakes.english_times import prefix_time_error, time_error
 from tltlc.grammar.mistakes.one_reading import TEMPORAL, UNCLEAR, has_token, is_clear_here, is_clear_word
 from tltlc.grammar.mistakes.parse_failure import INFIX, ParseFailure, outer_indices, quote_token
-from tltlc.grammar.mistakes.rephrasing import formula_start, formula_stop, operand_text
+from tltlc.grammar.mistakes.rephrasing import formula_start, formula_stop, operand_text, span_of, suggest_rewrite
 
 _FROM_THEN_ON: Final = {
     "keep": "write `keep b implies a` to require `a` at every step where `b` holds, or `keep b implies always a` to "
@@ -122,6 +129,11 @@ def _infix_word_error(failure: ParseFailure, forms: Forms) -> Diagnostic:
         return failure.error(
             "TLT0101", f"{quote_token(failure.token)} is not an operator", kept_before_help(parts.a, parts.b)
         )
+    if word == "before" and kind == "reach" and end == stop and begin == formula_start(failure):
+        title, help_ = f"{quote_token(failure.token)} is not an operator", reached_before_help(parts.a, parts.b)
+        text = f"require (not {parts.b}) until {parts.a}"
+        if is_clear and suggest_rewrite(failure, 0, stop, text, title):
+            return failure.error("TLT0101", title, help_, span=span_of(failure.tokens[:-1]))
     return rewrite_error(failure, at, (begin, end), form, parts if is_clear else None)
 
 

@@ -121,6 +121,8 @@ def _general_help(failure: ParseFailure, at: int, form: Form, written: Time | No
         )
     if word == "before" and not is_timed and effective_clause(failure, at) == "keep":
         return kept_before_help("a", "b")
+    if word == "before" and form == SEQUENCE[""] and clause_keyword(failure) == "reach":
+        return reached_before_help("a", "b")
     if word == "before" and form == SEQUENCE[""]:
         return (
             "write `a then b` to require `a` and later `b`; if `b` is not required, write `require (not b) until a` to "
@@ -145,6 +147,15 @@ def kept_before_help(first: str, second: str) -> str:
     return (
         f"write `keep {second} implies once {first}` if `{first}` must come first, "
         f"`require {first} weak_until {second}` if it must hold at every step until then"
+    )
+
+
+def reached_before_help(first: str, second: str) -> str:
+    """Return the help for `reach a before b`, with its readings."""
+    return (
+        f"write `require (not {second}) until {first}` if `{first}` must come, and `{second}` not before it, "
+        f"`require (not {second}) weak_until {first}` if `{first}` need not come, "
+        f"`reach {first} then {second}` if `{second}` must follow, and may come earlier, too"
     )
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Final
 
+from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.grammar.keywords import OPERATORS, UNITS_ELSEWHERE
 from tltlc.grammar.lexer import Token
@@ -29,6 +30,7 @@ from tltlc.grammar.mistakes.one_reading import (
     is_of_one_step,
 )
 from tltlc.grammar.mistakes.parse_failure import BEFORE_ONE, INFIX, ParseFailure, quote_token
+from tltlc.grammar.mistakes.repeats import begun_again
 from tltlc.grammar.mistakes.rephrasing import (
     formula_start,
     formula_stop,
@@ -38,6 +40,7 @@ from tltlc.grammar.mistakes.rephrasing import (
     span_of,
     suggest_rewrite,
     text_of,
+    without_brackets,
 )
 from tltlc.grammar.mistakes.shared_times import bracketed_time_error, shared_time_error
 
@@ -59,6 +62,10 @@ def time_error(failure: ParseFailure, forms: Forms) -> Diagnostic:
         return _sequence_error(failure, (begin, end), _shown_time(failure, time, written))
     if forms is IN_TIME and is_clear_unit and end == stop and len(goals) == 1:
         diagnostic = shared_time_error(failure, at, (begin, at), time)
+        if diagnostic is not None:
+            return diagnostic
+    if len(goals) == 2 and forms is IN_TIME and kind == "reach" and is_clear_unit and end == stop:
+        diagnostic = _arrival_error(failure, (goals[0], goals[1], at), time)
         if diagnostic is not None:
             return diagnostic
     if len(goals) > 1:
@@ -90,7 +97,13 @@ def time_error(failure: ParseFailure, forms: Forms) -> Diagnostic:
         is_clear = end == stop and _is_clear_operand(failure, begin, at) and failure.tokens[begin].type not in _UNARY
         operand = operand_text(failure, begin, at) if is_clear else "a"
         return _avoided_error(failure, at, operand, _shown_time(failure, time, written))
-    if kind == "keep" and forms is FOR_TIME and last is not None and failure.tokens[last].type == "IMPLIES":
+    is_rule = last is not None and failure.tokens[last].type == "IMPLIES"
+    if kind == "keep" and forms is FOR_TIME and not is_rule:
+        is_clear = end == stop and _is_clear_operand(failure, begin, at)
+        is_clear = is_clear and failure.tokens[begin].type not in _UNARY - {"NOT"}
+        part = (begin, at) if is_clear else None
+        return _kept_error(failure, at, part, _shown_time(failure, time, written))
+    if kind == "keep" and forms is FOR_TIME and last is not None:
         is_clear = is_clear_unit and end == stop and _is_clear_operand(failure, operator, at)
         is_clear = is_clear and failure.tokens[operator].type not in _UNARY - {"NOT"}
         is_clear = is_clear and not has_token(failure, begin, last, UNCLEAR | TEMPORAL)
@@ -125,6 +138,10 @@ def prefix_time_error(failure: ParseFailure, at: int, forms: Forms) -> Diagnosti
         is_clear = _is_clear_operand(failure, second, stop) and failure.tokens[second].type not in _UNARY
         operand = operand_text(failure, second, stop) if is_clear else "a"
         return _avoided_error(failure, at, operand, _shown_time(failure, time, written))
+    if at == first and kind == "keep" and forms is FOR_TIME:
+        is_clear = _is_clear_operand(failure, second, stop) and failure.tokens[second].type not in _UNARY - {"NOT"}
+        part = (second, stop) if is_clear else None
+        return _kept_error(failure, at, part, _shown_time(failure, time, written))
     if forms is IN_TIME and is_clear_unit:
         diagnostic = (
             shared_time_error(failure, at, (second, stop), time)
@@ -165,6 +182,47 @@ def _chain_error(failure: ParseFailure, goal: str, time: Time) -> Diagnostic:
     return failure.error("TLT0101", title, help_)
 
 
+def _arrival_error(failure: ParseFailure, part: tuple[int, int, int], time: Time) -> Diagnostic | None:
+    """Return the error for `reach a then b within 5 s`, whose time may count from the first step with a.
+
+    ``part`` are the indices where the two goals begin, and where the time does. Return None if the first
+    goal holds at one step alone, or if a goal is unclear.
+    """
+    first, second, at = part
+    goals = ((first, second - 1), (second, at))
+    if failure.tokens[first].type in ("BEGINS", "ENDS") or not all(_is_clear_operand(failure, *goal) for goal in goals):
+        return None
+    before, goal = (operand_text(failure, *goal) for goal in goals)
+    title, rest = f"{quote_token(failure.token)} is not an operator", f"then within {time.text} {goal}"
+    if failure.lacks_fixed_clock(time.text):
+        return failure.error("TLT0101", title, FIXED_CLOCK)
+    help_ = (
+        f"write `reach begins {before} {rest}` if the time counts from where `{before}` begins, "
+        f"`reach {before} {rest}` if from any step with it, such as the last"
+    )
+    return failure.error("TLT0101", title, help_, span=span_of(failure.tokens[:-1]))
+
+
+def _kept_error(failure: ParseFailure, at: int, part: tuple[int, int] | None, time: Time) -> Diagnostic:
+    """Return the error for `keep a for 3 s`, where ``at`` is the index of `for`, and ``part`` the range of ``a``.
+
+    ``part`` is None if it is unclear what the time applies to.
+    """
+    parts = Parts(operand_text(failure, *part) if part else "a", time.text, time=time)
+    once = parts.a if time.steps == 1 else parts.fill(FOR_TIME["reach"])
+    if time.is_real:
+        once = replace(parts, a=text_of(failure, *without_brackets(failure, *part)) if part else "a").fill(HOLDING)
+    help_ = (
+        f"write `reach {once}` if it must hold that long at some time, "
+        f"`require {parts.fill(FOR_TIME[''])}` if it must hold from the first step until then"
+    )
+    if failure.lacks_fixed_clock(time.text):
+        help_ = FIXED_CLOCK
+    word = failure.tokens[at]
+    span = span_of(failure.tokens[:-1]) if part else word.span
+    return failure.error("TLT0101", f"{quote_token(word)} is not an operator", help_, span=span)
+
+
 def _lasting_error(failure: ParseFailure, part: tuple[int, int], end: int, time: Time, *, is_clear: bool) -> Diagnostic:
     """Return the error for a time for which something holds where a rule asks for it: `keep a implies b for 3 s`.
 
@@ -197,6 +255,10 @@ def _sequence_error(failure: ParseFailure, part: tuple[int, int], time: Time) ->
     is_clear = is_clear and is_of_one_step(failure, begin, then) and _is_clear_operand(failure, then + 1, at)
     is_clear = is_clear and not has_token(failure, then + 1, at, {"NOT", *INFIX})
     first, second = (text_of(failure, begin, then), text_of(failure, then + 1, at)) if is_clear else ("a", "b")
+    if is_clear and first == second and clause_keyword(failure) == "avoid":
+        return suggest_rewrite(failure, 0, end, begun_again(first, time.text), title) or failure.error(
+            "TLT0101", title, f"write `{begun_again(first, time.text)}`"
+        )
     text = f"{first} then {limit} {second}"
     if failure.tokens[0].text == "keep" and failure.start == "clause":
         help_ = (

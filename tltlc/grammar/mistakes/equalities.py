@@ -29,6 +29,7 @@ from tltlc.grammar.mistakes.rephrasing import (
     suggest_rewrite,
     text_of,
 )
+from tltlc.grammar.mistakes.sentences.words import NUMBER_WORDS
 from tltlc.grammar.typos import likely_name
 
 Range = tuple[int, int]
@@ -242,6 +243,10 @@ def verb_is(failure: ParseFailure) -> Diagnostic | None:
     )
     if diagnostic is not None:
         return diagnostic
+    number = NUMBER_WORDS.get(tokens[second].text, "") if stop == second + 1 else ""
+    if number and _types(failure, (start, at)) == {"int"}:
+        text = f"{text_of(failure, start, at)} {'!=' if is_unequal else '=='} {number}"
+        return suggest_rewrite(failure, start, stop, text, title)
     if _is_number(failure, (start, at)):
         return failure.error("TLT0101", title, "compare numbers with `<`, `<=`, `>` or `>=`, whole ones also with `==`")
     value = text_of(failure, start, at)

@@ -10,7 +10,8 @@ import re
 from collections.abc import Sequence
 from typing import Final
 
-from tltlc.core.source import SourceFile
+from tltlc.core.record import replace
+from tltlc.core.source import SourceFile, Span
 from tltlc.diagnostics.diagnostic import Diagnostic, Label
 from tltlc.grammar import lalr, past_words
 from tltlc.grammar.keywords import CASES, CLAUSES, DECLARATIONS, closest_word
@@ -78,9 +79,27 @@ def unexpected_token(
     for rule in _RULES:
         diagnostic = rule(failure)
         if diagnostic:
-            return sentence_help(failure, diagnostic, is_explained=rule not in _OPEN_RULES)
+            return _at_fix(sentence_help(failure, diagnostic, is_explained=rule not in _OPEN_RULES))
     diagnostic = failure.error("TLT0101", failure.expectation(), failure.form())
-    return sentence_help(failure, diagnostic, is_explained=False)
+    return _at_fix(sentence_help(failure, diagnostic, is_explained=False))
+
+
+def _at_fix(diagnostic: Diagnostic) -> Diagnostic:
+    """Return an error whose main label covers all that its first fix replaces, if they lie on one line.
+
+    People write what a help says in place of what is underlined.
+    """
+    if not diagnostic.fixes:
+        return diagnostic
+    label, *others = diagnostic.labels
+    replaced = [edit.span for edit in diagnostic.fixes[0].edits if edit.span.start < edit.span.end]
+    span = Span(
+        min([label.span.start, *(span.start for span in replaced)]),
+        max([label.span.end, *(span.end for span in replaced)]),
+    )
+    if span == label.span or "\n" in label.source.slice(span):
+        return diagnostic
+    return replace(diagnostic, labels=(replace(label, span=span), *others))
 
 
 def unclosed_bracket(source: SourceFile, opening: Token) -> Diagnostic:

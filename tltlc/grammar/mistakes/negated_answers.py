@@ -45,13 +45,20 @@ def negated_answer_in_rule(failure: ParseFailure) -> Diagnostic | None:
 
 
 def negated_answer_error(
-    failure: ParseFailure, event: tuple[int, int], answer: tuple[int, int], time: str, word: int
+    failure: ParseFailure,
+    event: tuple[int, int],
+    answer: tuple[int, int],
+    time: str,
+    word: int,
+    *,
+    may_be_bare: bool = False,
 ) -> Diagnostic | None:
     """Return the error for an answer that is a negation in brackets, `is not` or `!=`, else None.
 
     ``event`` and ``answer`` are ranges of token indices, and ``word`` is the index of the English word.
+    ``may_be_bare`` is that of :func:`_negated_state`.
     """
-    state = _negated_state(failure, *answer)
+    state = _negated_state(failure, *answer, may_be_bare=may_be_bare)
     if state is None:
         return None
     help_ = _READINGS.format(

@@ -57,11 +57,13 @@ def repeat_error(
     *,
     word: int,
     lasting: bool,
+    may_end: bool = False,
 ) -> Diagnostic | None:
     """Return an error if what follows an event within a time, or for a time, is the event itself, else None.
 
     ``parts`` are the event and what follows it. ``keyword`` is that of the clause, and ``head`` that of a
-    quantifier over it, without the quantifier. ``word`` is the index of the English word.
+    quantifier over it, without the quantifier. ``word`` is the index of the English word. ``may_end``
+    says that `not hit` within the time may ask that the event ends.
     """
     event, again = (happening(failure, part) for part in parts)
     if event.text != again.text or event.is_negated or (keyword == "avoid" and again.is_negated):
@@ -74,6 +76,10 @@ def repeat_error(
     text, reason = "", ""
     if is_absent and keyword != "reach":
         text = begun_again(operand, time, head)
+        if may_end and not lasting and keyword != "avoid" and not again.begins:
+            ends = f"keep {one_by_one}{operand} implies eventually within {time} not {operand}"
+            help_ = f"write `{ends}` if it must end in that time, `{text}` if it must not begin again"
+            return failure.error("TLT0101", title, help_, span=span)
         # Where frames differ, a time behind `weak_next` does not count from the event.
         if lasting and not again.begins and not failure.clock_varies:
             steps = f"keep {one_by_one}begins {operand} implies weak_next always for {time} not {operand}"

@@ -6,7 +6,7 @@ from typing import Final
 
 from tltlc.core.record import record
 from tltlc.diagnostics.diagnostic import Diagnostic
-from tltlc.grammar.keywords import CLAUSES
+from tltlc.grammar.keywords import CLAUSES, OPERATORS
 from tltlc.grammar.lexer import END
 from tltlc.grammar.mistakes.declared_names import declared_names
 from tltlc.grammar.mistakes.english_rewrite import FIXED_CLOCK, Time
@@ -79,7 +79,10 @@ def response_in_english(failure: ParseFailure) -> Diagnostic | None:
     is_rule = _FORMS.get(keyword) == _RULE and not (head or response.lasting)
     if diagnostic is None and is_rule and _are_states(failure, response):
         time = response.time.text
-        diagnostic = negated_answer_error(failure, response.event, response.answer, time, response.word)
+        # `not b within 5 s of a` asks that no step of the time has b; before its time, `not b` may end b.
+        is_first = response.event < response.answer and tokens[response.word].text in _EVENTS
+        parts = (response.event, response.answer)
+        diagnostic = negated_answer_error(failure, *parts, time, response.word, may_be_bare=is_first)
     clause = _clause(failure, keyword, head, response)
     if diagnostic is None and clause is not None:
         title = f"{quote_token(tokens[response.word])} is not an operator"
@@ -101,7 +104,16 @@ def _repeat_error(failure: ParseFailure, keyword: str, head: str, response: _Res
     if not _are_states(failure, response):
         return None
     parts = (response.event, response.answer)
-    return repeat_error(failure, keyword, head, parts, response.time.text, word=response.word, lasting=response.lasting)
+    return repeat_error(
+        failure,
+        keyword,
+        head,
+        parts,
+        response.time.text,
+        word=response.word,
+        lasting=response.lasting,
+        may_end=response.event < response.answer,
+    )
 
 
 def _clause(failure: ParseFailure, keyword: str, head: str, response: _Response) -> str | None:
@@ -162,7 +174,8 @@ def _event_first(failure: ParseFailure, start: int, stop: int) -> _Response | No
     """Return the parts of `after a, b within TIME` and `after a, b for TIME`."""
     tokens = failure.tokens
     separator = _separator(failure, start, stop)
-    if tokens[start].text not in _EVENTS or separator is None:
+    # `after a, reach b within 5 s` is read as a sentence.
+    if tokens[start].text not in _EVENTS or separator is None or tokens[separator + 1].text in OPERATORS:
         return None
     for at in range(separator + 1, stop):
         time = time_at(tokens, at + 1) if tokens[at].text in (*_TIMES, "for") else None

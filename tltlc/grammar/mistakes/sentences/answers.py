@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Final, Literal
 
-from tltlc.core.record import record
+from tltlc.core.record import record, replace
 from tltlc.grammar.mistakes.sentences.states import ATOM, OR, State, state_of
 from tltlc.grammar.mistakes.sentences.vocabulary import (
     ALWAYS,
@@ -14,6 +14,7 @@ from tltlc.grammar.mistakes.sentences.vocabulary import (
     NOT,
     PROHIBITIONS,
     SUBJECTS,
+    UNEQUAL,
     WITHIN,
 )
 from tltlc.grammar.mistakes.sentences.words import Phrase, Words, phrases
@@ -34,18 +35,21 @@ class Answer:
     """A condition that must hold: at the step of the event, within a time from it on, or in another way.
 
     ``time`` is the text of a time; "" for kinds without one. ``is_negative`` says that the condition is
-    the opposite of what the sentence names.
+    the opposite of what the sentence names. ``keyword`` is `reach` or `keep` if it stands before the answer.
     """
 
     kind: Kind
     state: State
     time: str = ""
     is_negative: bool = False
+    keyword: Literal["", "reach", "keep"] = ""
 
 
 def answer_of(words: Words) -> Answer | None:
     """Return what words ask for, or None if it is unclear."""
     words = words.without([*SUBJECTS, (",",), ("then",)])
+    if words.word(0) == "reach":
+        return _reached(words[1:])
     is_kept = words.word(0) == "keep"
     prohibition = words.phrase(0, PROHIBITIONS)
     if prohibition:
@@ -53,14 +57,16 @@ def answer_of(words: Words) -> Answer | None:
         return None if answer is None else _negated(answer, is_never="no" not in prohibition)
     if words.word(0) == "not":
         answer = _affirmative(words[1:])
-        return None if answer is None or answer.kind not in ("now", "lasting", "within") else _negated(answer)
+        # `not b within 5 s` may ask for one step without b, or for no step with it.
+        return None if answer is None or answer.kind not in ("now", "lasting") else _negated(answer)
     words = words.without([*MODALS, ("keep",)])
     modal = words.find(MODALS)
     if modal is not None and not words[modal[0] + len(modal[1]) :].phrase(0, NOT):
         words = words[: modal[0]].followed_by(words[modal[0] + len(modal[1]) :])
     answer = _affirmative(words)
-    # `if a, keep b` may ask for b from then on, too.
-    return None if is_kept and answer is not None and answer.kind == "now" else answer
+    if answer is not None and answer.kind == "within" and words.find([*NOT, *UNEQUAL]):
+        return None
+    return replace(answer, keyword="keep") if is_kept and answer is not None else answer
 
 
 def clause_of(event: State, answer: Answer) -> str:
@@ -80,6 +86,14 @@ def clause_of(event: State, answer: Answer) -> str:
         "next": "next",
     }
     return f"keep {condition} implies {operators[answer.kind]} {state.at(ATOM)}"
+
+
+def _reached(words: Words) -> Answer | None:
+    """Return the answer of `reach b` and `reach b within 5 s`, which is met at one step."""
+    answer = _affirmative(words)
+    if answer is None or answer.kind not in ("now", "within", "eventually"):
+        return None
+    return replace(answer, kind="eventually" if answer.kind == "now" else answer.kind, keyword="reach")
 
 
 def _negated(answer: Answer, *, is_never: bool = False) -> Answer | None:

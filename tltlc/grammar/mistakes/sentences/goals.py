@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tltlc.grammar.mistakes.sentences.rules import Clauses, condition_of
+from tltlc.grammar.mistakes.sentences.rules import COUNTED, Clauses, condition_of
 from tltlc.grammar.mistakes.sentences.states import (
     ATOM,
     OR,
@@ -57,6 +57,8 @@ def _goal(words: Words) -> State | None:
     count = count_of(words)
     if count is not None and count[1] not in ("", ">=", ">"):
         return None
+    if COMPARISONS.get(words.phrase(0, COMPARISONS), ">") in ("<=", "<"):
+        return None  # `at most 50 coins` may be a rule
     return _all_of_a_number(words) or condition_of(words)
 
 
@@ -76,6 +78,8 @@ def _single(words: Words) -> Clauses | None:
     if with_ is not None and with_[0]:
         return _with(words[: with_[0]], words[with_[0] + len(with_[1]) :])
     goal, time = words, ""
+    if words.find([*WITHIN, *FIRST_WITHIN]) and COUNTED.intersection(word.text for word in words):
+        return None  # the time of a count is that of its steps, or begins at the first step
     first = words.phrase(0, [*WITHIN, *FIRST_WITHIN])
     start = words.time(len(first)) if first else None
     if start is not None:

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from typing import Final
+
+from tltlc.core.record import replace
 from tltlc.grammar.mistakes.sentences.answers import Answer, answer_of, clause_of
 from tltlc.grammar.mistakes.sentences.states import (
     ATOM,
@@ -35,6 +38,10 @@ from tltlc.grammar.mistakes.sentences.vocabulary import (
 from tltlc.grammar.mistakes.sentences.words import Words, phrases
 
 Clauses = tuple[str, ...]
+COUNTED: Final = frozenset(("times", "time_since", "time_holding"))
+"""The functions whose values depend on all steps before."""
+_LASTING: Final = phrases("while", "during", "as long as", "so long as", "for as long as")
+"""Words before a condition that may have to hold until a goal is reached."""
 
 
 def rule_of(words: Words) -> Clauses | None:
@@ -91,7 +98,7 @@ def _implication(words: Words) -> Clauses | None:
     if len(parts) != 2 or words.word(0) == "not" or parts[1].phrase(0, NEVER):
         return None
     event, answer = condition_of(parts[0].without([*SUBJECTS, *phrases("every", "each", "any")])), answer_of(parts[1])
-    return None if event is None or answer is None else (clause_of(event, answer),)
+    return None if event is None or answer is None else _answered(event, answer, is_from_then=False)
 
 
 def _condition_first(words: Words) -> Clauses | None:
@@ -101,8 +108,9 @@ def _condition_first(words: Words) -> Clauses | None:
         return _unless_first(words)
     for start, stop in _borders(words, len(phrase)):
         event, answer = condition_of(words[len(phrase) : start]), answer_of(words[stop:])
-        if event is not None and answer is not None:
-            return _answered(event, answer, is_from_then=phrase in FROM_THEN)
+        if event is None or answer is None or (answer.keyword == "reach" and phrase in _LASTING):
+            continue
+        return _answered(event, answer, is_from_then=phrase in FROM_THEN)
     return None
 
 
@@ -121,6 +129,9 @@ def _borders(words: Words, first: int) -> list[tuple[int, int]]:
     border = words.find(phrases(",", "then", ", then", ":", "=>", "->", "implies"), first)
     if border is not None:
         return [(border[0], border[0] + len(border[1]))]
+    keyword = words.find(phrases("reach", "keep", "avoid"), first + 1)
+    if keyword is not None:
+        return [(keyword[0], keyword[0])]
     after_name = next((at + 1 for at in range(first, len(words)) if words[at].is_name), len(words))
     if after_name < len(words) and words[after_name].text == "(":
         after_name = next((at + 1 for at in range(after_name, len(words)) if words[at].text == ")"), len(words))
@@ -129,8 +140,15 @@ def _borders(words: Words, first: int) -> list[tuple[int, int]]:
 
 def _answered(event: State, answer: Answer, *, is_from_then: bool) -> Clauses | None:
     """Return the rule that asks for an answer, if the kind of the condition leaves one reading."""
-    if answer.state in (event, event.negated()):
+    is_reached = answer.keyword == "reach"
+    if answer.state == event or (answer.state == event.negated() and not is_reached):
         return None  # an event that answers itself begins again
+    if is_reached and answer.kind == "eventually" and is_from_then:
+        return None  # each event needs an answer, or both are goals
+    if answer.keyword == "keep" and answer.kind == "now":
+        # Without `after`, b may have to hold at that step alone. A count is that of all steps.
+        is_clear = is_from_then and not COUNTED.intersection(answer.state.text.replace("(", " ").split())
+        return (clause_of(event, replace(answer, kind="always")),) if is_clear else None
     if is_from_then and answer.kind == "now":
         return None  # at that step, or from then on
     if not is_from_then and answer.kind == "always":

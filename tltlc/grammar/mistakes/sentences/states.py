@@ -88,14 +88,14 @@ def state_of(words: Words) -> State | None:
 
 def is_event(words: Words) -> bool:
     """Whether words are the name of a signal or predicate that is true or false, perhaps with arguments."""
-    return bool(words) and _is_bool(words, 0) and _call_end(words, 0) == len(words)
+    return bool(words) and _is_bool(words, 0) and call_end(words, 0) == len(words)
 
 
 def is_value(words: Words) -> bool:
     """Whether words are the name of a number or of an enum, perhaps with arguments."""
     declared = words.declared(0) if words else None
     is_known = declared is not None and declared.type in (*_NUMERIC, "enum")
-    return is_known and _call_end(words, 0) == len(words)
+    return is_known and call_end(words, 0) == len(words)
 
 
 def count_of(words: Words) -> tuple[State, str, str] | None:
@@ -109,7 +109,7 @@ def count_of(words: Words) -> tuple[State, str, str] | None:
         event = words[at:].without([*SUBJECTS, *phrases("of"), *COPULAS])
         if is_event(event) and not words.phrase(0, phrases("once")):
             return State(event.text), _count_sign(phrase), number
-    end = _call_end(words, 0)
+    end = call_end(words, 0)
     if is_value(words[:end]):
         end = next((at for at in range(end, len(words)) if words[at:].phrase(0, _COUNTED)), len(words))
     counted = State(words[:end].text) if _is_bool(words, 0) else state_of(words[:end]) if end < len(words) else None
@@ -129,7 +129,7 @@ def holding_of(words: Words) -> tuple[State, str, str] | None:
     """Return what holds, a sign and a time of `hidden for at least 3 s`; the sign is empty for `for 3 s`."""
     found = words.find_last([("for",)])
     if found is None:
-        end = _call_end(words, 0)
+        end = call_end(words, 0)
         if not is_event(words[:end]):
             return None
         at, start = end, end + len(words.phrase(end, phrases("lasts", "last")))
@@ -168,7 +168,7 @@ def _with_subject(parts: Sequence[Words]) -> Iterator[Words]:
     declared = parts[0].declared(0) if parts[0] else None
     for part in parts:
         is_value_of = declared is not None and len(part) == 1 and part[0].text in declared.values
-        yield parts[0][: _call_end(parts[0], 0)].followed_by(part) if is_value_of else part
+        yield parts[0][: call_end(parts[0], 0)].followed_by(part) if is_value_of else part
 
 
 def _is_in_brackets(words: Words) -> bool:
@@ -191,7 +191,7 @@ def _between(words: Words) -> State | None:
     assert found is not None
     left, right = words[: found[0]], words[found[0] + 1 :]
     ends = right.split(phrases("and"))
-    end = _call_end(left, 0) if left else 0
+    end = call_end(left, 0) if left else 0
     if len(ends) != 2 or not left or left[end:].without(COPULAS) or not _is_number(left, 0):
         return None
     if not all(_is_value(side) for side in ends):
@@ -224,7 +224,7 @@ def _of_number(words: Words) -> State | None:
         return _comparison(words[-1].text, relation, number) if number else None
     if not _is_number(words, 0):
         return None
-    end = _call_end(words, 0)
+    end = call_end(words, 0)
     value, rest = words[:end].text, words[end:]
     copula = rest.phrase(0, COPULAS)
     for start in {len(copula), 0}:
@@ -245,7 +245,7 @@ def _of_number(words: Words) -> State | None:
 
 def _of_bool(words: Words) -> State | None:
     """Return a signal or predicate that is true or false, perhaps with `is true`, or a count of one."""
-    end = _call_end(words, 0)
+    end = call_end(words, 0)
     if not _is_bool(words, 0):
         return None
     state, rest = State(words[:end].text), words[end:]
@@ -266,7 +266,7 @@ def _of_enum(words: Words) -> State | None:
     declared = words.declared(0)
     if declared is None or declared.type != "enum":
         return None
-    end = _call_end(words, 0)
+    end = call_end(words, 0)
     rest = words[end:]
     unequal, equal = rest.phrase(0, UNEQUAL), rest.phrase(0, EQUALITIES)
     phrase = unequal if len(unequal) >= len(equal) else equal
@@ -306,7 +306,7 @@ def _opposite(left: str, sign: str, right: str) -> str:
     return f"{left} {NEGATED_SIGN[sign]} {right}" if sign in NEGATED_SIGN else ""
 
 
-def _call_end(words: Words, at: int) -> int:
+def call_end(words: Words, at: int) -> int:
     """Return the index after the name at an index and its arguments."""
     if at + 1 >= len(words) or words[at + 1].text != "(":
         return min(at + 1, len(words))

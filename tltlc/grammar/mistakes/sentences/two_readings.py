@@ -4,11 +4,22 @@ from __future__ import annotations
 
 from typing import Final
 
+from tltlc.grammar.mistakes.counts_in_words import COUNT_ELSEWHERE
 from tltlc.grammar.mistakes.sentences.answers import answer_of
-from tltlc.grammar.mistakes.sentences.rules import condition_of
-from tltlc.grammar.mistakes.sentences.states import ATOM, OR, State, state_of
-from tltlc.grammar.mistakes.sentences.vocabulary import COPULAS, FROM_THEN, MODALS, SUBJECTS
-from tltlc.grammar.mistakes.sentences.words import Words, phrases
+from tltlc.grammar.mistakes.sentences.rules import COUNTED, condition_of
+from tltlc.grammar.mistakes.sentences.states import ATOM, OR, State, call_end, state_of
+from tltlc.grammar.mistakes.sentences.vocabulary import (
+    COMPARISONS,
+    COPULAS,
+    EQUALITIES,
+    FROM_THEN,
+    MODALS,
+    SUBJECTS,
+    UNEQUAL,
+    VERBS,
+    WITHIN,
+)
+from tltlc.grammar.mistakes.sentences.words import Phrase, Words, phrases
 
 _NEEDS: Final = phrases("requires", "needs", "depends on", "is required for")
 _FROM_THEN: Final = (
@@ -23,6 +34,16 @@ _NEEDED: Final = (
     "write `keep {a} implies {b}` if both must hold at the same step, "
     "`keep {a} implies once {b}` if `{b}` may have held before"
 )
+_GOALS: Final = (
+    "write `keep {b} implies eventually {a}` if `{a}` must follow each `{b}`, "
+    "`reach {b} then {a}` if both must come, in this order"
+)
+_AFTER: Final = (
+    "write `keep {b} implies always a` for `{word} {b} keep a`, "
+    "`keep {b} implies eventually a` for `{word} {b} reach a`"
+)
+_SMALL: Final = "write `keep {a}` if it must hold at every step, `reach {a}` if one step with it is enough"
+_KEYWORDS: Final = phrases("reach", "keep", "avoid")
 _UNTIL: Final = "write `require {a} until {b}` if `{b}` must come, `require {a} weak_until {b}` if it need not"
 
 
@@ -31,13 +52,7 @@ def both_readings(words: Words) -> str | None:
     words = words.without(SUBJECTS)
     first = words.phrase(0, FROM_THEN)
     if first:
-        border = words.find(phrases(",", "then", ", then"), len(first))
-        if border is None:
-            return None
-        answer = answer_of(words[border[0] + len(border[1]) :])
-        condition = condition_of(words[len(first) : border[0]])
-        state = None if answer is None or answer.kind != "now" else answer.state
-        return _help(_FROM_THEN, state, condition)
+        return _after(words, first)
     for known, form in (
         (_NEEDS, _NEEDED),
         (phrases("before"), _BEFORE),
@@ -52,7 +67,60 @@ def both_readings(words: Words) -> str | None:
         if modal is not None:
             left = left[: modal[0]].followed_by(left[modal[0] + len(modal[1]) :].without(COPULAS))
         return _help(form, state_of(left), state_of(right))
-    return None
+    return _small_goal(words) or _counted_in_time(words) or _unknown_value(words) or _state_alone(words)
+
+
+def _after(words: Words, first: Phrase) -> str | None:
+    """Return the help for a sentence that begins with `after a`: what follows may be asked for in several ways."""
+    border = words.find(phrases(",", "then", ", then"), len(first)) or words.find(_KEYWORDS, len(first))
+    if border is None:
+        return None
+    start = border[0] if border[1] in _KEYWORDS else border[0] + len(border[1])
+    answer, condition = answer_of(words[start:]), condition_of(words[len(first) : border[0]])
+    is_counted = answer is not None and COUNTED.intersection(answer.state.text.replace("(", " ").split())
+    readings = None
+    if answer is not None and answer.kind == "now" and not is_counted:
+        readings = _help(_FROM_THEN, answer.state, condition)
+    elif answer is not None and answer.kind == "eventually" and answer.keyword == "reach":
+        readings = _help(_GOALS, answer.state, condition)
+    if readings is None and words[start:].phrase(0, _KEYWORDS):
+        event = condition.at(OR) if condition is not None else "b"
+        return _AFTER.format(b=event, word=" ".join(first))
+    return readings
+
+
+def _small_goal(words: Words) -> str | None:
+    """Return the help for `the player must reach at most 50 coins`, which the first step may meet."""
+    rest = words.without([*SUBJECTS, *MODALS, *VERBS])
+    is_small = COMPARISONS.get(rest.phrase(0, COMPARISONS), "") in ("<=", "<")
+    state = state_of(rest) if is_small else None
+    return None if state is None else _SMALL.format(a=state.text)
+
+
+def _counted_in_time(words: Words) -> str | None:
+    """Return the help for `times(a) <= 2 within 5 s`, whose count begins at the first step."""
+    found = words.find(WITHIN)
+    if found is None or not words.time(found[0] + len(found[1])) or words[0].text != "times":
+        return None
+    return f"`{words[: call_end(words, 0)].text}` counts from the first step on: {COUNT_ELSEWHERE}"
+
+
+def _unknown_value(words: Words) -> str | None:
+    """Return the help for `mode is three`, where the enum has no such value."""
+    declared = words.declared(0)
+    value = words[1:].without([*EQUALITIES, *UNEQUAL])
+    if declared is None or declared.type != "enum" or len(value) != 1 or value[0].text in declared.values:
+        return None
+    listed = ", ".join(f"`{name}`" for name in declared.values)
+    return f"`{words[0].text}` has no value `{value[0].text}`: its values are {listed}"
+
+
+def _state_alone(words: Words) -> str | None:
+    """Return the help for a condition in words without the keyword of a clause: `lap is three`."""
+    state = state_of(words)
+    if state is None or state.text == words.text:
+        return None
+    return f"write `reach {state.text}`, or `keep {state.text}` for every step"
 
 
 def _help(form: str, a: State | None, b: State | None) -> str | None:

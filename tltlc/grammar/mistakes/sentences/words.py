@@ -26,10 +26,11 @@ _OPERATORS: Final = {
     "UNTIL": "until",
 }
 """Maps the terminals of operators to the words for them."""
-_NUMBERS: Final = {
+NUMBER_WORDS: Final = {
     word: str(number)
     for number, word in enumerate("zero one two three four five six seven eight nine ten eleven twelve".split())
 }
+"""Maps the words for numbers up to twelve to their digits."""
 _APOSTROPHES: Final = ("'", "’")
 
 Phrase = tuple[str, ...]
@@ -145,7 +146,7 @@ class Words(Sequence[Word]):
         """Return the digits of the number at an index, as `3` for `three`; "" if there is none."""
         if 0 <= at < len(self) and self[at].type == "NUMBER":
             return self[at].text
-        return _NUMBERS.get(self.word(at), "")
+        return NUMBER_WORDS.get(self.word(at), "")
 
     def time(self, at: int) -> tuple[Time, int] | None:
         """Return the time at an index, as `5 s` for `5 seconds`, and the index after it, else None."""
