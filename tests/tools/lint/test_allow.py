@@ -63,7 +63,7 @@ def test_a_comment_in_another_place_or_form_silences_nothing(text: str, expected
 @pytest.mark.parametrize(
     ("clauses", "expected"),
     [
-        ("reach heard\n        then heard  // ALLOW\n        then (seen implies heard)\n    limit 9 steps\n", []),
+        ("reach seen\n        then heard  // ALLOW\n        then (seen implies heard)\n    limit 9 steps\n", []),
         ("reach (seen\n        implies heard) limit 9 steps  // ALLOW\n", []),
         ("limit 9 steps reach (seen  // ALLOW\n        implies heard)\n", []),
         ("reach (seen implies heard)\n    limit 9 steps  // ALLOW\n", ["TLT0412", "TLT0427"]),
