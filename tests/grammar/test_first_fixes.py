@@ -52,6 +52,8 @@ def first_error(clause: str, declarations: str = "platformer") -> Diagnostic:
             "after died reach checkpoint or not died within 10 s",
             "keep died implies eventually within 10 s (checkpoint or not died)",
         ),
+        ("as soon as damaged reach checkpoint within 10 s", "keep damaged implies eventually within 10 s checkpoint"),
+        ("following damaged, checkpoint within 10 s", "keep damaged implies eventually within 10 s checkpoint"),
         ("after boss_dead keep health > 0", "keep boss_dead implies always health > 0"),
         ("after boss_dead, keep health > 0", "keep boss_dead implies always health > 0"),
         ("once boss_dead keep health > 0", "keep boss_dead implies always health > 0"),
@@ -92,6 +94,8 @@ def test_the_first_fix_has_the_meaning(typed: str, meant: str) -> None:
         "after boss_dead keep damaged at most 3 times",
         "after boss_death keep health > 0",
         "while damaged reach at_door",
+        "if damaged keep invulnerable within 5 s",
+        "after damaged keep invulnerable within 5 s",
         "times(died) <= 2 within 5 s",
         "reach at most 50 coins",
         "the player must reach at most 50 coins",
@@ -104,9 +108,13 @@ def test_a_clause_with_two_readings_gets_no_fix(typed: str) -> None:
     assert error.help
 
 
-@pytest.mark.parametrize("word", ["after", "once"])
+@pytest.mark.parametrize("word", ["after", "once", "following"])
 def test_a_sentence_that_begins_with_an_event_gets_the_clauses_for_it(word: str) -> None:
-    for typed in (f"{word} boss_dead keep damaged at most 3 times", f"{word} boss_death reach at_exit"):
+    for typed in (
+        f"{word} boss_dead reach has_key then at_exit",
+        f"{word} boss_dead keep damaged at most 3 times",
+        f"{word} boss_death reach at_exit",
+    ):
         help_ = first_error(typed).help or ""
         assert "implies always a` for" in help_ or "implies eventually" in help_
 

@@ -110,6 +110,8 @@ def _condition_first(words: Words) -> Clauses | None:
         event, answer = condition_of(words[len(phrase) : start]), answer_of(words[stop:])
         if event is None or answer is None or (answer.keyword == "reach" and phrase in _LASTING):
             continue
+        if answer.keyword == "keep" and answer.kind not in ("now", "lasting", "always"):
+            return None  # `after a, keep b within 5 s` may ask for one step, or for all of that time
         return _answered(event, answer, is_from_then=phrase in FROM_THEN)
     return None
 

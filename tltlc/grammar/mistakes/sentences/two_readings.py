@@ -72,7 +72,7 @@ def both_readings(words: Words) -> str | None:
 
 def _after(words: Words, first: Phrase) -> str | None:
     """Return the help for a sentence that begins with `after a`: what follows may be asked for in several ways."""
-    border = words.find(phrases(",", "then", ", then"), len(first)) or words.find(_KEYWORDS, len(first))
+    border = words.find([*phrases(",", "then", ", then"), *_KEYWORDS], len(first))
     if border is None:
         return None
     start = border[0] if border[1] in _KEYWORDS else border[0] + len(border[1])
