@@ -8,6 +8,7 @@ from random import Random
 import pytest
 
 from tltlc import TltlError, compile_text
+from tltlc.automaton import broken_clauses
 from tltlc.automaton.fspa import BrokenClause, Fspa
 from tltlc.core.source import SourceFile
 from tltlc.monitor import Monitor
@@ -133,3 +134,16 @@ def test_a_trace_of_a_spec_that_none_meets_fails_at_its_first_step() -> None:
     numbers = count(1)
     steps = [monitor.step({"a": next(numbers) == 2}) for _ in range(3)]
     assert {(step.failed_clause, step.failed_atom, step.failed_step) for step in steps} == {(None, None, 1)}
+
+
+def test_no_clause_is_named_if_the_search_is_too_long(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Less than all traces would name clauses that are not broken."""
+    lines = [f"signal {name}: bool" for name in ("a", "b", "g0", "g1", "g2", "g3")]
+    text = "\n".join([*lines, "spec s {", "avoid a", "avoid b", *(f"reach g{number}" for number in range(4)), "}"])
+    (whole,) = compile_text(text)
+    assert any(edge.broken for edge in whole.edges)
+    monkeypatch.setattr(broken_clauses, "_LEAST_STEPS", 20)
+    monkeypatch.setattr(broken_clauses, "_STEPS_PER_EDGE", 0)
+    (cut,) = compile_text(text)
+    assert cut.clauses == whole.clauses
+    assert not any(edge.broken for edge in cut.edges)

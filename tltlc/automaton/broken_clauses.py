@@ -16,8 +16,15 @@ from tltlc.automaton.work import STEPS_PER_STATE, OutOfWork, Work
 from tltlc.core.record import record, replace
 from tltlc.resolve.spec import Spec
 
-_MOST_STEPS: Final = 50_000
-"""The most steps of the search for the states of the clauses; with more, only some of them are known."""
+_LEAST_STEPS: Final = 50_000
+_STEPS_PER_EDGE: Final = 10
+"""The search for the states of the clauses may take this many steps for each edge, and at least ``_LEAST_STEPS``."""
+_LEAST_STATES: Final = 200
+_STATES_PER_STATE: Final = 4
+"""A clause may have this many states for each state of the spec, and at least ``_LEAST_STATES``.
+
+Clauses alone can be much larger than the spec, as where another clause rules most of their traces out.
+"""
 
 _Place = tuple[int, ...]
 """A state of each clause's automaton."""
@@ -26,10 +33,10 @@ _Place = tuple[int, ...]
 def with_broken_clauses(fspa: Fspa, spec: Spec, state_budget: int) -> Fspa:
     """Return the automaton of ``spec`` with the texts of its clauses, and with the clauses that its edges break.
 
-    For this, each clause gets an automaton of at most ``state_budget`` states; a clause that needs more is
-    never named. Several traces may lead to the same state although a clause has come further in some of
-    them than in others. Then an edge breaks the clause only under the conditions that break it after each
-    of these traces. In large automata, only some of the traces are looked at.
+    For this, each clause gets an automaton; a clause that needs more than ``state_budget`` states, or many
+    more than the spec, is never named. Several traces may lead to the same state although a clause has come
+    further in some of them than in others. Then an edge breaks the clause only under the conditions that
+    break it after each of these traces. If finding all of them takes too many steps, no clause is named.
     """
     clauses = tuple(part.text for part in spec.parts)
     found: dict[int, tuple[BrokenClause, ...]]
@@ -37,7 +44,8 @@ def with_broken_clauses(fspa: Fspa, spec: Spec, state_budget: int) -> Fspa:
         found = {index: (BrokenClause(0, edge.guard.primes),) for index, edge in _breaking_edges(fspa)}
     else:
         with recursion_room():
-            found = _Search(fspa, spec, state_budget).found()
+            most_states = max(_LEAST_STATES, _STATES_PER_STATE * len(fspa.states))
+            found = _Search(fspa, spec, min(state_budget, most_states)).found()
     edges = tuple(
         replace(edge, broken=found[index]) if index in found else edge for index, edge in enumerate(fspa.edges)
     )
@@ -116,7 +124,8 @@ class _Search:
     """Runs the automata of the clauses beside the automaton of the spec."""
 
     def __init__(self, fspa: Fspa, spec: Spec, state_budget: int) -> None:
-        self._fspa, self._diagrams, self._steps = fspa, TransitionDiagrams(), 0
+        self._fspa, self._diagrams = fspa, TransitionDiagrams()
+        self._steps_left = max(_LEAST_STEPS, _STEPS_PER_EDGE * len(fspa.edges))
         names = [atom.name for atom in spec.atoms]
         self._guards = Guards(self._diagrams, names, self._diagrams.allowed_letters(spec.exclusive))
         self._automata: list[_ClauseAutomaton] = []
@@ -131,8 +140,10 @@ class _Search:
         self._conditions: dict[tuple[int, int], int] = {}
 
     def found(self) -> dict[int, tuple[BrokenClause, ...]]:
-        """Return what the edges into traps break, by the index of the edge."""
+        """Return what the edges into traps break, by the index of the edge; nothing if the search is too long."""
         places = self._places()
+        if places is None:
+            return {}
         return {index: self._broken(edge, places[edge.source]) for index, edge in _breaking_edges(self._fspa)}
 
     def _broken(self, edge: Edge, places: Sequence[_Place]) -> tuple[BrokenClause, ...]:
@@ -167,8 +178,11 @@ class _Search:
                 known[node] = self._diagrams.node(diagrams.variable[node], low, high)
         return known[node]
 
-    def _places(self) -> dict[int, list[_Place]]:
-        """Return the states of the clauses after traces that lead to each state of the spec that is no trap."""
+    def _places(self) -> dict[int, list[_Place]] | None:
+        """Return the states of the clauses after all traces that lead to each state of the spec that is no trap.
+
+        Return None if the search takes too many steps.
+        """
         leaving: list[list[Edge]] = [[] for _ in self._fspa.states]
         for edge in self._fspa.edges:
             if self._fspa.states[edge.target].verdict != "violated":
@@ -178,13 +192,13 @@ class _Search:
         queue: list[tuple[int, _Place]] = [(0, start)]
         for state, place in queue:
             for edge in leaving[state]:
-                if self._steps > _MOST_STEPS and edge.target in places:
-                    continue
                 known = places.setdefault(edge.target, [])
                 for after in self._after(place, edge.guard.primes):
                     if after not in known:
                         known.append(after)
                         queue.append((edge.target, after))
+                if self._steps_left < 0:
+                    return None
         return places
 
     def _after(self, place: _Place, primes: Sequence[Implicant]) -> Iterator[_Place]:
@@ -196,7 +210,9 @@ class _Search:
             stack, seen = [nodes], {nodes}
             while stack:
                 nodes = stack.pop()
-                self._steps += 1
+                self._steps_left -= 1
+                if self._steps_left < 0:
+                    return
                 atoms = [
                     automaton.diagrams.variable[node] for automaton, node in zip(self._automata, nodes, strict=True)
                 ]
@@ -206,8 +222,6 @@ class _Search:
                     if after is not None and after not in found:
                         found.add(after)
                         yield after
-                    if self._steps > _MOST_STEPS and found:
-                        return
                     continue
                 for holds in (True, False):
                     if polarity.get(atom, holds) == holds:

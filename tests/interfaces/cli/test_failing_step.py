@@ -74,6 +74,17 @@ def test_the_json_document_has_the_failure_in_fields(tltlc) -> None:  # type: ig
     assert (accepted["accepted"], accepted["failure"]) == (True, None)
 
 
+def test_an_error_later_in_the_trace_does_not_hide_the_failure(tltlc) -> None:  # type: ignore[no-untyped-def]
+    name = trace("1,0,50", "1,x,50")
+    judged = tltlc("monitor", "boss.tltl", name)
+    assert judged.out.endswith(
+        "before the error: violated at step 1: `boss_door` without `sword now or before`, clause 2\n"
+    )
+    assert "error[TLT0622]" in judged.err
+    document = json.loads(tltlc("monitor", "boss.tltl", name, "--json").out)
+    assert (document["accepted"], document["verdict"], document["failure"]["failed_step"]) == (None, None, 1)
+
+
 def test_an_artefact_knows_the_clauses_but_not_their_lines(tltlc) -> None:  # type: ignore[no-untyped-def]
     assert tltlc("compile", "boss.tltl", "-t", "json").status == 0
     out = tltlc("monitor", "boss.fspa.json", trace("1,0,50")).out

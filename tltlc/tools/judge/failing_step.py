@@ -91,6 +91,8 @@ class FailingStep:
     def _value_words(self, atom: int) -> str:
         """Return the value of an atom, or for a comparison the values that it compares."""
         fspa = self._monitor.fspa
+        if fspa.atoms[atom].timer is not None:
+            return atom_words(fspa, atom)
         measured = measure(fspa, atom, self._known)
         if measured is not None and measured.value is not None:
             unit = f" {measured.unit}" if measured.unit else ""

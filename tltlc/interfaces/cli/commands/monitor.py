@@ -146,7 +146,11 @@ def _judge_steps(
             failing = FailingStep(monitor, _clause_places(spec_input))
             rows = run(monitor, failing.watched(steps.watched(samples)))
             show = {"json": _show_json, "csv": _show_csv, "table": _show_table}[output]
-            result = outcome(show(fspa, failing.noted(_with_notices(rows, monitor.notices, report))))
+            try:
+                result = outcome(show(fspa, failing.noted(_with_notices(rows, monitor.notices, report))))
+            except TltlError:
+                (_break_json if output == "json" else _break_text)(monitor, failing)
+                raise
         (_end_json if output == "json" else _end_text)(result, monitor, failing)
         report.add(steps.warnings())
         if result and fspa.limit_steps is not None and result.steps > fspa.limit_steps:
@@ -277,21 +281,30 @@ def _end_text(result: TraceOutcome, monitor: Monitor, failing: FailingStep) -> N
     print(f"{'accepted' if result.accepted else 'not accepted'}: {result.verdict} after {steps}")
 
 
+def _break_text(monitor: Monitor, failing: FailingStep) -> None:
+    """Say what had failed before an error in the trace."""
+    from tltlc.monitor.failure_words import failure_words
+
+    if monitor.failure is not None:
+        _print_lines([*failing.details(), f"before the error: {failure_words(monitor.fspa, monitor.failure)}"])
+
+
 def _show_json(fspa: Fspa, rows: Iterator[RunStep]) -> Iterator[RunStep]:
     from tltlc.tools.judge.json_values import step_values
 
     print(json.dumps({"spec": fspa.name})[:-1] + ', "rows": [', flush=True)
     between = ""
-    try:
-        for row in rows:
-            sys.stdout.write(between + json.dumps(step_values(fspa, row)))
-            sys.stdout.flush()
-            between = ",\n"
-            yield row
-    except TltlError:
-        # Complete the JSON document even after an error. It then says that there is no verdict.
-        print('\n], "accepted": null, "verdict": null}', flush=True)
-        raise
+    for row in rows:
+        sys.stdout.write(between + json.dumps(step_values(fspa, row)))
+        sys.stdout.flush()
+        between = ",\n"
+        yield row
+
+
+def _break_json(_: Monitor, failing: FailingStep) -> None:
+    """Complete the JSON document after an error: it says that there is no verdict, and what had failed before."""
+    end = {"accepted": None, "verdict": None, "failure": failing.values()}
+    print("\n], " + json.dumps(end)[1:], flush=True)
 
 
 def _end_json(result: TraceOutcome, _: Monitor, failing: FailingStep) -> None:
