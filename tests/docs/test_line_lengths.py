@@ -11,10 +11,6 @@ from tests.docs.blocks import DOCS, ROOT
 
 COLUMNS = 100
 PAGES = sorted([*DOCS.rglob("*.md"), ROOT / "README.md", ROOT / "CONTRIBUTING.md", ROOT / "CHANGELOG.md"])
-NOT_YET_WRAPPED = {
-    "docs/guides/unity.md",
-}
-"""Pages that still have longer lines. The list only shrinks: never add a page."""
 
 _NOT_PROSE = re.compile(r"^ *```.*?^ *```$|<!--.*?-->|^(?:\||    |\[?!\[).*$", re.DOTALL | re.MULTILINE)
 _LINK_TARGET = re.compile(r"\]\([^)\s]*\)")
@@ -34,14 +30,7 @@ def long_lines(text: str) -> list[str]:
 @pytest.mark.parametrize("page", PAGES, ids=name)
 def test_lines_of_prose_are_at_most_100_columns_long(page: Path) -> None:
     too_long = long_lines(page.read_text(encoding="utf-8"))
-    if name(page) in NOT_YET_WRAPPED:
-        assert too_long, f"{name(page)} is wrapped now: take it off the list"
-    else:
-        assert not too_long, f"{name(page)} has {len(too_long)} long lines, the first is:\n{too_long[0]}"
-
-
-def test_the_list_of_pages_to_wrap_names_pages() -> None:
-    assert {name(page) for page in PAGES} >= NOT_YET_WRAPPED
+    assert not too_long, f"{name(page)} has {len(too_long)} long lines, the first is:\n{too_long[0]}"
 
 
 @pytest.mark.parametrize(
