@@ -2,8 +2,10 @@
 
 The parts of a sentence are read on their own and put together:
 
-- conditions (:mod:`tltlc.grammar.mistakes.sentences.states`) and what follows them (:mod:`tltlc.grammar.mistakes.sentences.answers`);
-- rules (:mod:`tltlc.grammar.mistakes.sentences.rules`) and goals (:mod:`tltlc.grammar.mistakes.sentences.goals`).
+- conditions (:mod:`tltlc.grammar.mistakes.sentences.states`),
+- what follows them (:mod:`tltlc.grammar.mistakes.sentences.answers`),
+- rules (:mod:`tltlc.grammar.mistakes.sentences.rules`),
+- goals (:mod:`tltlc.grammar.mistakes.sentences.goals`).
 
 A sentence with two readings has none here.
 """
