@@ -161,6 +161,10 @@ def test_a_success_and_a_failure_are_shown(page: Page) -> None:
     for name, verdict in (("Show a success", "holding"), ("Show a failure", "violated")):
         page.get_by_role("button", name=name).click()
         expect(page.locator("#steps .verdict").last).to_have_text(verdict)
+    page.locator("#steps .go").last.click()
+    failure = re.compile(r"Violated at step \d+: .+, clause \d: .+\.")
+    expect(page.locator("#moment")).to_have_text(failure)
+    expect(page.locator("#steps .verdict.violated").last).to_have_attribute("title", failure)
     page.get_by_role("button", name="Clear").click()
     expect(page.locator("#steps tbody tr")).to_have_count(0)
     assert current(page) == "0"

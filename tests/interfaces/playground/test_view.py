@@ -121,9 +121,20 @@ def test_a_trace_of_atoms_is_judged_step_by_step() -> None:
     ]
     assert [row["progress"] for row in rows] == [0.0, 0.5, 1.0, 1.0]
     assert rows[0]["limiting"] == "a"
+    failure = "violated at step 4: `fuel <= 1`, clause 2: `keep fuel > 1`"
+    assert [row["failure"] for row in rows] == [None, None, None, failure]
     # Each row has a sample of signals, which is judged alike.
     rows_of_signals = view(BUTTONS, "both", [row["signals"] for row in rows])["spec"]["rows"]
     assert [row["state"] for row in rows_of_signals] == [row["state"] for row in rows]
+
+
+def test_a_trace_that_no_single_clause_fails_names_none() -> None:
+    text = "signal a: bool\nsignal b: bool\nspec x { keep a implies next b  keep a implies next not b }"
+    rows = view(text, "", [[], ["a"], []])["spec"]["rows"]
+    failure = "violated at step 2: `a`, against several clauses together"
+    assert [row["failure"] for row in rows] == [None, failure, failure]
+    rows = view("signal a: bool\nspec never = F a & G !a", "", [["a"]])["spec"]["rows"]
+    assert [row["failure"] for row in rows] == ["violated at step 1: no trace can meet the spec"]
 
 
 def test_an_invalid_step_ends_the_rows() -> None:

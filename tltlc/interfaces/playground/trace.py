@@ -12,6 +12,8 @@ from tltlc.automaton.text import label_text
 from tltlc.automaton.work import OutOfWork
 from tltlc.monitor import Monitor
 from tltlc.monitor.errors import MonitorError
+from tltlc.monitor.failure import Failure
+from tltlc.monitor.failure_words import failure_words
 from tltlc.tools.witness.blocks import given_values
 from tltlc.tools.witness.samples import SampleFinder
 from tltlc.tools.witness.step_lengths import length_of, shortest_deadline_s
@@ -35,8 +37,9 @@ def rows(fspa: Fspa, letters: Iterable[PageLetter], lengths: Iterable[float | No
     names, and those of atoms that follow from others, are ignored), or the values of the signals. In a
     row, ``from`` is the state before the step, ``values`` are the values of the atoms in order, and
     ``signals`` are values of the signals with which exactly these atoms hold; None if no such values
-    were found, or if the automaton has registers, which depend on the steps before. If the monitor
-    refuses a step, the row of the step has an ``error``, and is the last row.
+    were found, or if the automaton has registers, which depend on the steps before. From the step at
+    which the trace fails, ``failure`` says at which step, by which atoms, and against which clause;
+    before, it is None. If the monitor refuses a step, the row of the step has an ``error``, and is the last row.
     """
     monitor, finder = Monitor(fspa), None if fspa.registers else SampleFinder(fspa)
     result: list[dict[str, Any]] = []
@@ -64,11 +67,19 @@ def rows(fspa: Fspa, letters: Iterable[PageLetter], lengths: Iterable[float | No
                 "progress": step.progress,
                 "reward": step.reward,
                 "limiting": step.limiting,
+                "failure": None if monitor.failure is None else _failure(fspa, monitor.failure),
                 "values": list(monitor.values),
                 "signals": sample if isinstance(sample, dict) else None,
             }
         )
     return result
+
+
+def _failure(fspa: Fspa, failed: Failure) -> str:
+    words = failure_words(fspa, failed)
+    if failed.cause is None or failed.cause.clause is None:
+        return words
+    return f"{words}: `{fspa.clauses[failed.cause.clause]}`"
 
 
 def idle_step(fspa: Fspa) -> dict[str, Any]:

@@ -121,7 +121,8 @@ function fill(row, letter, step, mode, columns) {
   const known = step && !step.error;
   row.classList.toggle("wrong", Boolean(step?.error));
   row.querySelector(".at").textContent = known ? step.state : "";
-  const verdict = known ? element("span", { class: `verdict ${step.verdict}` }, step.verdict) : "";
+  const failure = step?.failure ? sentence(step.failure.replaceAll("`", "")) : null;
+  const verdict = known ? element("span", { class: `verdict ${step.verdict}`, title: failure }, step.verdict) : "";
   row.querySelector(".step-verdict").replaceChildren(step?.error ? element("span", { class: "refused" }, "refused") : verdict);
   row.querySelector("meter").hidden = !known;
   row.querySelector("meter").value = known ? step.progress : 0;
@@ -147,6 +148,11 @@ function warn(names, mode) {
   place.dataset.text = text;
 }
 
+/** Return a phrase as a sentence. */
+function sentence(text) {
+  return `${text[0].toUpperCase()}${text.slice(1)}.`;
+}
+
 function showStep(step, length) {
   const place = byId("moment");
   if (!length) place.textContent = "There is no step yet: add one, and set what holds at it.";
@@ -155,6 +161,6 @@ function showStep(step, length) {
   else {
     const end = step.done ? (step.accepting ? "  An episode ends here, in success." : "  An episode ends here, in failure.") : "";
     const near = step.limiting ? `  The nearest edge towards the goal is held back by ${step.limiting}.` : "";
-    place.textContent = `${step.label}${near}${end}`;
+    place.replaceChildren(...(step.failure ? prose(sentence(step.failure)) : [step.label, near]), end);
   }
 }
