@@ -45,8 +45,8 @@ for (const letters of @ROUNDS@) {
   for (const letter of letters) {
     const health = letter === "h" || letter === "b" ? 0.25 : 1;
     monitor.step({ seen: letter === "s" || letter === "b", health, alarm: letter === "a", open: false }, result);
-    const { labelEnglish, failedClause, failedAtom, failedStep } = result;
-    console.log([labelEnglish, failedClause ?? "", failedAtom ?? "", failedStep ?? ""].join("|"));
+    const { label_english, failed_clause, failed_atom, failed_step } = result;
+    console.log([label_english, failed_clause ?? "", failed_atom ?? "", failed_step ?? ""].join("|"));
   }
 }
 """
@@ -77,7 +77,7 @@ for (const options of [undefined, {}, { sparse: true }]) {
   const monitor = new Monitor({}, options);
   for (const sample of [{ seen: true }, { health: 1 }, { health: 1, seen: true }, { health: 1, seen: null }]) {
     try {
-      console.log(monitor.step(sample).failedAtom ?? "");
+      console.log(monitor.step(sample).failed_atom ?? "");
     } catch (error) {
       console.log(error.message);
     }
