@@ -161,7 +161,7 @@ def test_a_folder_that_disappears_and_returns_is_noticed(folder: Path) -> None:
         (folder / "deep").rmdir()
         assert "error[TLT0001]: cannot read `deep`: there is no such file" in running.next_messages()
         (folder / "new").mkdir()
-        replace(folder / "new" / "a.tltl", "signal a: bool\nspec x { limit 9 steps  reach a then a }\n")
+        replace(folder / "new" / "a.tltl", "signal a: bool\nsignal b: bool\nspec x { limit 9 steps  reach a then b }\n")
         (folder / "new").rename(folder / "deep")
         assert running.next_messages()[-1] == "2 files: nothing to report, 1 test passed"
     finally:
