@@ -88,7 +88,7 @@ fn take(monitor: &mut Monitor, sample: Signals) {
         Ok(step) => println!(
             "{}|{}|{}|{}|{}",
             step.label,
-            step.label_english,
+            step.label_english(),
             step.failed_clause.unwrap_or("-"),
             step.failed_atom.unwrap_or("-"),
             step.failed_step.map_or(0, u64::from)

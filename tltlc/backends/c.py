@@ -310,7 +310,6 @@ class _Source:
         lines = [f"int {states.TARGET} = monitor->state;", f"const char *{states.LIMITING} = NULL;"]
         lines.append(f"double {states.ROBUSTNESS} = 0.0;")
         lines += [f"double {states.PROGRESS} = 0.0;"] if self._fspa.judge == "goal" else []
-        lines += [f"int {states.FAILURE} = -1;"] if self._program.failures else []
         has_tables = self._program.tables is not None
         lines += [f"const int {states.FIRST_EDGE} = first_edges[monitor->state];"] if has_tables else []
         lines.append("switch (state_shapes[monitor->state]) {" if has_tables else "switch (monitor->state) {")
@@ -320,7 +319,8 @@ class _Source:
             lines.append(f"{_INDENT}case {number}: {{")
             values = [line for index in self._program.computed_in(number) for line in self._code.value(index)]
             lines += [f"{_INDENT * 2}{line}" for line in (*self._bools(number), *values)]
-            lines += self._printer.lines(case.statements, depth=2)
+            statements = states.with_failed_step(case.statements, ProgramVariable(reward_step.STEPS))
+            lines += self._printer.lines(statements, depth=2)
             lines += [f"{_INDENT * 2}break;", f"{_INDENT}}}"]
         return [*lines, "}"]
 

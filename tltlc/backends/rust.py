@@ -23,6 +23,7 @@ from tltlc.program.label_texts import LabelTexts
 from tltlc.program.printer import CHOICE, Printer, comment_lines
 from tltlc.program.shapes import StateTables
 from tltlc.program.step_code import StepCode
+from tltlc.program.tree import ProgramVariable
 from tltlc.program.used_names import variables_read
 from tltlc.resolve.spec import Param, Signal
 
@@ -292,7 +293,6 @@ class _Source(StepCode):
         lines = [f"let mut {states.TARGET} = self.state;", f"let mut {states.LIMITING}: isize = -1;"]
         lines.append(f"let mut {states.ROBUSTNESS} = 0.0;")
         lines += [f"let mut {states.PROGRESS} = 0.0;"] if self._fspa.judge == "goal" else []
-        lines += [f"let mut {states.FAILURE}: isize = -1;"] if self._program.failures else []
         has_tables = self._program.tables is not None
         lines += [f"let {states.FIRST_EDGE} = FIRST_EDGES[self.state] as usize;"] if has_tables else []
         lines.append("match STATE_SHAPES[self.state] {" if has_tables else "match self.state {")
@@ -300,7 +300,8 @@ class _Source(StepCode):
             lines += [f"{_INDENT}{line}" for line in self._printer.comment(case.comment)]
             lines.append(f"{_INDENT}{number} => {{")
             lines += [f"{_INDENT * 2}{line}" for line in (*self._bools(number), *self._values(number))]
-            lines += [*self._printer.lines(case.statements, depth=2), f"{_INDENT}}}"]
+            statements = states.with_failed_step(case.statements, ProgramVariable(reward_step.STEPS))
+            lines += [*self._printer.lines(statements, depth=2), f"{_INDENT}}}"]
         return [*lines, f"{_INDENT}_ => {{}}", "}"]
 
     def _judge(self) -> list[str]:

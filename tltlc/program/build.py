@@ -38,7 +38,7 @@ DT = "dt"
 
 _OWN = (
     *(states.TARGET, states.ROBUSTNESS, states.PROGRESS, states.LIMITING, states.NEAREST, states.OTHER),
-    *(states.FAILURE, states.FIRST_EDGE),
+    *(states.FAILURE, states.FAILED_STEP, states.FIRST_EDGE),
     *(reward_step.STEPS, reward_step.STEPS_REAL, reward_step.BEST, reward_step.BEFORE, reward_step.REWARD),
     *(reward_step.DONE, reward_step.ENDS, reward_step.VIOLATED, reward_step.SATISFIED, "state"),
 )

@@ -6,7 +6,7 @@ They find the edge to take, its robustness, and the progress. Begin with `StateC
 
 from __future__ import annotations
 
-from collections.abc import Collection, Hashable, Mapping, Sequence
+from collections.abc import Collection, Hashable, Iterable, Mapping, Sequence
 from functools import lru_cache, reduce
 from typing import Final
 
@@ -48,11 +48,29 @@ FAILURE = "failure"
 
 It is an index into :attr:`StateCode.failures`. The statements of other edges leave the variable as it is.
 """
+FAILED_STEP = "failed_step"
+"""The variable that :func:`with_failed_step` assigns: the number, from 1, of the step that takes such an edge."""
 FIRST_EDGE = "first_edge"
 """The place of the state's first edge in the table of targets, which statements that read tables need."""
 NEAREST, OTHER = "nearest", "other"
 """Two local variables: the robustness of the best prime implicant so far, and of the one compared with it."""
 _ZERO: Final = Real(0.0)
+
+
+def with_failed_step(statements: Iterable[Statement], steps: ProgramExpression) -> tuple[Statement, ...]:
+    """Return the statements, which also assign the number of the step, ``steps``, where they assign what it fails at.
+
+    Only one step of a trace takes an edge into a trap, so the other steps need no test.
+    """
+    found: list[Statement] = []
+    for statement in statements:
+        if isinstance(statement, If):
+            cases = tuple((test, with_failed_step(body, steps)) for test, body in statement.cases)
+            statement = If(cases, with_failed_step(statement.otherwise, steps))
+        found.append(statement)
+        if isinstance(statement, Assign) and statement.name == FAILURE:
+            found.append(Assign(FAILED_STEP, steps))
+    return tuple(found)
 
 
 def state_edges(tables: MonitorTables, state: int) -> list[Edge]:

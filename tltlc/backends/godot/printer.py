@@ -2,25 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from typing import ClassVar
 
 from tltlc.backends.godot.numbers import number
 from tltlc.program.printer import CHOICE, OR, Printer
-from tltlc.program.reward_step import STEPS
-from tltlc.program.states import FAILURE
 from tltlc.program.tree import (
     Assign,
-    BinaryNumber,
     Declare,
-    If,
-    Int,
     Negate,
     NumericCall,
     ProgramExpression,
     ProgramVariable,
     Real,
-    Statement,
     Table,
     Type,
 )
@@ -105,22 +99,6 @@ class Gd(Printer):
         """Return the text of a call of a numeric function of Godot or of the script."""
         ordered = list(reversed(arguments)) if function in self._swapped else arguments
         return super().call(self._functions.get(function, f"_{function}"), ordered)
-
-
-def with_failed_step(statements: Iterable[Statement]) -> tuple[Statement, ...]:
-    """Return the statements, which also assign the number of the step where they assign what it fails at.
-
-    Only one step of a trace takes an edge into a trap, so the other steps need no test.
-    """
-    found: list[Statement] = []
-    for statement in statements:
-        if isinstance(statement, If):
-            cases = tuple((test, with_failed_step(body)) for test, body in statement.cases)
-            statement = If(cases, with_failed_step(statement.otherwise))
-        found.append(statement)
-        if isinstance(statement, Assign) and statement.name == FAILURE:
-            found.append(Assign("failed_step", BinaryNumber("+", ProgramVariable(STEPS), Int(1))))
-    return tuple(found)
 
 
 def _is_simple(node: ProgramExpression) -> bool:

@@ -18,7 +18,7 @@ from tltlc.backends import Files
 from tltlc.backends.godot.dialect import Dialect
 from tltlc.backends.godot.names import RESERVED, snake_case
 from tltlc.backends.godot.numbers import signed_number
-from tltlc.backends.godot.printer import Gd, with_failed_step
+from tltlc.backends.godot.printer import Gd
 from tltlc.backends.templates import fill_template, names_in
 from tltlc.monitor.samples import range_text
 from tltlc.program import reward_step, snippets, states
@@ -29,7 +29,7 @@ from tltlc.program.label_texts import LabelTexts
 from tltlc.program.printer import CHOICE
 from tltlc.program.shapes import StateTables
 from tltlc.program.step_code import StepCode
-from tltlc.program.tree import FAILING
+from tltlc.program.tree import FAILING, BinaryNumber, Int, ProgramVariable
 from tltlc.program.used_names import functions_called
 from tltlc.resolve.spec import Param, Signal
 
@@ -355,7 +355,9 @@ class _Source(StepCode):
     def _case(self, place: int) -> list[str]:
         case = self._program.cases[place]
         lines = [*self._printer.comment(case.comment), *self._bools(place), *self._values(place)]
-        return [*lines, *self._printer.lines(with_failed_step(case.statements))]
+        # `steps` counts this step only at its end.
+        number = BinaryNumber("+", ProgramVariable(reward_step.STEPS), Int(1))
+        return [*lines, *self._printer.lines(states.with_failed_step(case.statements, number))]
 
     def _judge(self) -> list[str]:
         # Adding 0 replaces -0 by 0, as in all monitors.

@@ -34,6 +34,10 @@ class CPrinter(Printer):
                 return f"{states.LIMITING} = {string_literal(self._atoms[index].name) if index >= 0 else 'NULL'};"
         return super().assignment(statement)
 
+    def name(self, name: str) -> str:
+        """Return a variable, which may be a field of the monitor."""
+        return f"monitor->{name}" if name in (states.FAILURE, states.FAILED_STEP) else name
+
     def call(self, function: str, arguments: Sequence[str]) -> str:
         """Return the text of a call of a numeric function.
 

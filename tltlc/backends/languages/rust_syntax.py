@@ -6,9 +6,9 @@ import re
 from collections.abc import Sequence
 from typing import ClassVar, Final
 
-from tltlc.program import snippets
+from tltlc.program import snippets, states
 from tltlc.program.printer import CHOICE, OR, UNIT, Printer, comment_lines
-from tltlc.program.tree import FAILING, Choice, Declare, ProgramExpression, Table, Type
+from tltlc.program.tree import FAILING, Assign, Choice, Declare, ProgramExpression, Table, Type
 
 MATH_FUNCTIONS: Final = {"sqrt", "power", "exp", "tanh"}
 """The functions of a program that Rust's ``core`` lacks."""
@@ -36,6 +36,17 @@ class RustPrinter(Printer):
         if statement.value is None:
             return f"{head}: {self.TYPES[statement.type]};"
         return f"{head} = {self.text(statement.value, CHOICE)};"
+
+    def name(self, name: str) -> str:
+        """Return a variable, which may be a field of the monitor."""
+        return f"self.{name}" if name in (states.FAILURE, states.FAILED_STEP) else name
+
+    def assignment(self, statement: Assign) -> str:
+        """Return the text of an assignment; the number of a step that failed is never 0."""
+        match statement:
+            case Assign(states.FAILED_STEP, steps):
+                return f"{self.name(states.FAILED_STEP)} = NonZeroU64::new({self.text(steps)});"
+        return super().assignment(statement)
 
     def head(self, test: str, *, first: bool) -> str:
         """Return the line that begins a case: ``if`` or ``else if``, with its test."""
