@@ -118,7 +118,11 @@ fn main() {
     take(&mut copy, Signals { health: 1.0, open: Some(true), ..Signals::SPARSE });
 }
 """
-MISSING: Final = "no finite number for the signal"
+MISSING: Final = {
+    "health": "no finite number for the signal `health`",
+    "open": "no finite number for the signal `open`",
+    "key": "no finite number for the signal `key`",
+}
 EMPTY: Final = {"health": 1.0, "open": 0.0, "key": 0.0}
 
 
@@ -126,11 +130,11 @@ def rows(fspa: Fspa) -> Iterator[str]:
     """Yield what the programs above print, from :class:`tltlc.monitor.Monitor`."""
     order = [signal.name for signal in fspa.signals]
     for given in ((), ("health",), ("health", "open")):
-        yield f"step 1: {MISSING} `{next(name for name in order if name not in given)}`"
+        yield f"step 1: {MISSING[next(name for name in order if name not in given)]}"
     monitor, copy = Monitor(fspa), Monitor(fspa)
     yield row(monitor, {**EMPTY, "key": 1.0})
     copy.step({**EMPTY, "key": 1.0})
-    yield f"step 2: {MISSING} `health`"
+    yield f"step 2: {MISSING['health']}"
     yield row(copy, {**EMPTY, "health": 0.0})
     yield row(copy, EMPTY)
     yield row(monitor, EMPTY)
@@ -185,6 +189,41 @@ def test_a_game_in_c(compiler: str, options: tuple[str, ...], tables: bool, tmp_
     assert output(tmp_path, "./game") == wanted
 
 
+SPARSE: Final = r"""
+#include "s_monitor.h"
+
+int main(void) {
+    s_monitor monitor;
+    s_result result;
+    s_init(&monitor, NULL);
+    s_signals sample = s_empty();
+    if (sample.open || sample.key || s_sparse().open) return 1;
+    if (s_step(&monitor, &sample, &result)) return 2;
+    char text[s_text_size];
+    s_message(&monitor, text, sizeof text);
+    puts(text);
+    sample.health = 1.0;
+    for (int step = 0; step < 3; step++) {
+        sample.open = step == 2;
+        if (!s_step(&monitor, &sample, &result)) return 3;
+        puts(s_verdict_name(result.verdict));
+    }
+    return 0;
+}
+"""
+
+
+@pytest.mark.parametrize("compiler", COMPILERS)
+@pytest.mark.parametrize("option", ["-O0", "-O2", "-DTLTL_NO_REGISTERS", "-DTLTL_VERDICT_ONLY"])
+def test_bools_that_are_not_set_are_false_in_a_sparse_monitor(compiler: str, option: str, tmp_path: Path) -> None:
+    usable("c")
+    (fspa,) = compile_text(SPEC)
+    write("c", fspa, tmp_path, tables=False)
+    (tmp_path / "game.c").write_text(SPARSE, encoding="utf-8")
+    output(tmp_path, *COMPILERS[compiler], *STRICT, *SANITIZED, option, "-DTLTL_SPARSE", "game.c", "-o", "game", "-lm")
+    assert output(tmp_path, "./game") == [f"step 1: {MISSING['health']}", "holding", "holding", "violated"]
+
+
 @pytest.mark.parametrize("tables", [False, True])
 def test_a_game_in_rust(tables: bool, tmp_path: Path) -> None:
     usable("rust")
@@ -222,7 +261,7 @@ def test_a_monitor_of_verdicts_refuses_the_same_samples(tmp_path: Path) -> None:
     write("c", fspa, tmp_path, tables=False)
     (tmp_path / "game.c").write_text(VERDICT_ONLY, encoding="utf-8")
     output(tmp_path, *COMPILERS["gcc"], *STRICT, "-DTLTL_VERDICT_ONLY", "game.c", "-o", "game", "-lm")
-    assert output(tmp_path, "./game") == [f"step 1: {MISSING} `key`"]
+    assert output(tmp_path, "./game") == [f"step 1: {MISSING['key']}"]
 
 
 @pytest.mark.parametrize("target", ["c", "rust"])

@@ -222,5 +222,5 @@ def test_times_are_integers() -> None:
     ((_, header),) = emit("c", fspa).items()
     only = str(header).split("#if defined(TLTL_VERDICT_ONLY)\n")[1].split("#elif")[0]
     assert "int waiting_alarm_hidden_before;\n" in only
-    assert "bool due_alarm_hidden_before;\n" in only
+    assert "s_flag_(due_alarm_hidden_before);\n" in only
     assert "double" not in only

@@ -27,7 +27,7 @@ from tltlc.program import reward_step, snippets, states
 from tltlc.program.build import program
 from tltlc.program.enums import flat_enums
 from tltlc.program.shapes import StateTables
-from tltlc.program.tree import FAILING, Choice, Compare, ProgramExpression, ProgramVariable, Real
+from tltlc.program.tree import FAILING, Choice, Compare, ProgramExpression, ProgramVariable, Real, Type
 from tltlc.program.used_names import variables_read
 from tltlc.resolve.spec import Param, Signal
 
@@ -73,7 +73,7 @@ class _Source:
         failing = program_.functions & FAILING
         present = [*failing, *(["note"] if failing else []), *([] if all(program_.always_in_range) else ["atom"])]
         present += ["number"] if any(signal.type != "bool" for signal in fspa.signals) else []
-        present += ["bool"] if any(signal.type == "bool" for signal in fspa.signals) else []
+        present += ["bool" if any(signal.type == "bool" for signal in fspa.signals) else "no_bool"]
         present += ["failures" if program_.failures else "no_failures"]
         present += ["exclusive"] if program_.exclusive else []
         present += ["params"] if fspa.params else []
@@ -115,8 +115,13 @@ class _Source:
             "english_macros": english.macros,
             "english_labels": english.items,
             "english_ends": english.ends,
-            "signal_defaults": self._sample("-1"),
-            "sparse_defaults": self._sample("false"),
+            "sparse_defaults": CPrinter.block(
+                [f"sample.{name} = {'false' if signal.type == 'bool' else 'HUGE_VAL'};" for signal, name in signals]
+                or ["sample.none = false;"]
+            ),
+            "missing_bools": CPrinter.block(
+                [f"sample.{name} = -1;" for signal, name in signals if signal.type == "bool"]
+            ),
             "failures": "\n".join(self._failures()),
             "failed_step": str(int(fspa.states[0].verdict == "violated")),
             "param_defaults": CPrinter.block(
@@ -166,17 +171,7 @@ class _Source:
     # --- records ----------------------------------------------------------------------------------
 
     def _type(self, signal: Signal) -> str:
-        # A short has room for a value that is neither true nor false, and is no part of a monitor: otherwise, compilers
-        # would read the sample again after they write a field of the monitor.
-        return "short" if signal.type == "bool" else "double"
-
-    def _sample(self, bool_: str) -> str:
-        """Return the code that makes a sample in which numbers are missing, and bools have the value ``bool_``."""
-        lines = [
-            f"sample.{name} = {bool_ if signal.type == 'bool' else 'HUGE_VAL'};"
-            for signal, name in zip(self._fspa.signals, self._program.signals, strict=True)
-        ]
-        return CPrinter.block(lines or ["sample.none = false;"])
+        return f"{self._prefix}_bool_" if signal.type == "bool" else "double"
 
     def _fields(self, fields: Sequence[tuple[str, str, Signal | Param]]) -> str:
         """Return the fields of a struct, each with its comment.
@@ -263,16 +258,16 @@ class _Source:
     def _holds(self, atom: int) -> ProgramExpression:
         return Compare(">", ProgramVariable(self._program.atoms[atom]), Real(0.0))
 
-    def _remembered(self) -> list[tuple[int, str, str]]:
+    def _remembered(self) -> list[tuple[int, str, Type]]:
         """Return the registers that a step reads: the number of each, its variable before the sample, and its type."""
         used, booleans = self._program.variables_used, self._program.booleans
         before = enumerate(self._program.before)
-        return [(index, name, "bool" if name in booleans else "double") for index, name in before if name in used]
+        return [(index, name, "bool" if name in booleans else "real") for index, name in before if name in used]
 
     def _recall(self) -> list[str]:
         """Return the code that reads the values of the registers before the sample."""
         return [
-            f"const {type_} {name} = monitor->registers[{index}]{' > 0.0' if type_ == 'bool' else ''};"
+            f"const {CPrinter.TYPES[type_]} {name} = monitor->registers[{index}]{' > 0.0' if type_ == 'bool' else ''};"
             for index, name, type_ in self._remembered()
         ]
 
@@ -291,12 +286,14 @@ class _Source:
         used = self._program.variables_used
         keep += [f"(void){name};" for index, name in enumerate(names) if index not in kept and name not in used]
         return {
-            "memory_fields": CPrinter.block([f"{type_} {name};" for _, name, type_ in remembered] or ["bool none;"], 2),
+            "memory_fields": CPrinter.block(
+                [self._printer.field(type_, name) for _, name, type_ in remembered] or ["bool none;"], 2
+            ),
             "memory_starts": CPrinter.block(
                 [f"monitor->memory.{name} = {starts[index]};" for index, name, _ in remembered]
             ),
             "memory_recall": CPrinter.block(
-                [f"const {type_} {name} = monitor->memory.{name};" for _, name, type_ in remembered]
+                [f"const {CPrinter.TYPES[type_]} {name} = monitor->memory.{name};" for _, name, type_ in remembered]
             ),
             "memory_keep": CPrinter.block(keep),
         }

@@ -9,7 +9,7 @@ from tltlc.backends.languages.c_text import escape, string_literal
 from tltlc.program import states
 from tltlc.program.names import printable_line
 from tltlc.program.printer import Printer
-from tltlc.program.tree import FAILING, Assign, Int
+from tltlc.program.tree import FAILING, Assign, Int, Type
 from tltlc.resolve.spec import Atom
 
 
@@ -37,6 +37,10 @@ class CPrinter(Printer):
     def name(self, name: str) -> str:
         """Return a variable, which may be a field of the monitor."""
         return f"monitor->{name}" if name in (states.FAILURE, states.FAILED_STEP) else name
+
+    def field(self, type_: Type, name: str) -> str:
+        """Return the field of a monitor that keeps a value of the trace so far."""
+        return f"{self._prefix}_flag_({name});" if type_ == "bool" else f"{self.TYPES[type_]} {name};"
 
     def call(self, function: str, arguments: Sequence[str]) -> str:
         """Return the text of a call of a numeric function.

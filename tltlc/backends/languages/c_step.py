@@ -54,8 +54,7 @@ class StepCode:
         """
         tests = self._range_tests([(signal, name) for signal, name in signals if signal.type != "bool"])
         bools = [f"sample->{name}" for signal, name in signals if signal.type == "bool"]
-        # A bool that is missing is negative, and then so are all their bits together.
-        tests += [f"({' | '.join(bools)}) >= 0"] if bools else []
+        tests += [f"{self._prefix}_given_({' | '.join(bools)})"] if bools else []
         lines = _wrapped(f"if (!({' && '.join(tests)})) {{")
         for index, (signal, name) in enumerate(signals):
             if signal.type == "bool":

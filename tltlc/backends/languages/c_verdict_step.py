@@ -28,7 +28,7 @@ def verdict_pieces(program: Program, printer: CPrinter) -> dict[str, str]:
     lines = snippets.paragraphs(read, code.compute(), code.check(step.exclusive), move, keep)
     return {
         "verdict_fields": printer.block(
-            [f"{printer.TYPES[register.type]} {register.before};" for register in step.kept] or ["bool none;"], 2
+            [printer.field(register.type, register.before) for register in step.kept] or ["bool none;"], 2
         ),
         "verdict_starts": printer.block(
             [f"monitor->memory.{register.before} = {_start(register)};" for register in step.kept]
