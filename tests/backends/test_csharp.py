@@ -308,9 +308,15 @@ def test_a_forgotten_signal_is_refused_unless_it_is_a_bool_of_a_sparse_sample(tm
     (tmp_path / "forgotten.cs").write_text(FORGOTTEN)
     compile_program(tmp_path, "-out:forgotten.exe", "forgotten.cs", "GuardedMonitor.cs")
     first = [
-        f"NotFinite step 1: no finite number for the signal `{name}`" for name in ("seen", "health", "alarm", "open")
+        "NotSet step 1: the signal `seen` is not set",
+        "NotFinite step 1: no finite number for the signal `health`",
+        "NotSet step 1: the signal `alarm` is not set",
+        "NotSet step 1: the signal `open` is not set",
     ]
-    second = [f"NotFinite step 2: no finite number for the signal `{name}`" for name in ("seen", "health")]
+    second = [
+        "NotSet step 2: the signal `seen` is not set",
+        "NotFinite step 2: no finite number for the signal `health`",
+    ]
     lines = [*first, "None Holding", *second, "None Holding", "None Violated"]
     assert run_program(tmp_path, "forgotten.exe") == (0, "".join(f"{line}\n" for line in lines), "")
 

@@ -120,8 +120,8 @@ fn main() {
 """
 MISSING: Final = {
     "health": "no finite number for the signal `health`",
-    "open": "no finite number for the signal `open`",
-    "key": "no finite number for the signal `key`",
+    "open": "the signal `open` is not set",
+    "key": "the signal `key` is not set",
 }
 EMPTY: Final = {"health": 1.0, "open": 0.0, "key": 0.0}
 

@@ -523,7 +523,12 @@ func _init():
 def test_a_forgotten_signal_is_refused_unless_it_is_a_bool_of_a_sparse_sample(tmp_path: Path) -> None:
     write(tmp_path, guarded())
     (tmp_path / "forgotten.gd").write_text(FORGOTTEN)
-    first = [f"step 1: no finite number for the signal `{name}`" for name in ("seen", "health", "alarm", "open")]
-    second = [f"step 2: no finite number for the signal `{name}`" for name in ("seen", "health")]
+    first = [
+        "step 1: the signal `seen` is not set",
+        "step 1: no finite number for the signal `health`",
+        "step 1: the signal `alarm` is not set",
+        "step 1: the signal `open` is not set",
+    ]
+    second = ["step 2: the signal `seen` is not set", "step 2: no finite number for the signal `health`"]
     status, out, err = run(tmp_path, "forgotten.gd")
     assert (status, out.splitlines()) == (0, [*first, "HOLDING", *second, "HOLDING", "VIOLATED"]), err

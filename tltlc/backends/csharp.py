@@ -226,7 +226,7 @@ class _Source(StepCode):
         signals = zip(self._fspa.signals, self._program.signals, self._signal_fields, strict=True)
         for index, (signal, name, field) in enumerate(signals):
             if signal.type == "bool":
-                lines.append(f"if (!sample.{field}.HasValue) return Refuse(Problem.NotFinite, {index}, out result);")
+                lines.append(f"if (!sample.{field}.HasValue) return Refuse(Problem.NotSet, {index}, out result);")
                 continue
             low, high = (
                 snippets.number_literal(signal.low, "double.NegativeInfinity"),

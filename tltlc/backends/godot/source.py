@@ -244,7 +244,7 @@ class _Source(StepCode):
         for index, (signal, name) in enumerate(zip(self._fspa.signals, self._signals, strict=True)):
             if signal.type == "bool":
                 lines.append(f"if sample.{name} == null and problem == Problem.NONE:")
-                lines += ["\tproblem = Problem.NOT_FINITE", f"\twhich = {index}"]
+                lines += ["\tproblem = Problem.NOT_SET", f"\twhich = {index}"]
                 continue
             is_used = self._program.signals[index] in used
             value = name if is_used else f"sample.{name}"
