@@ -23,8 +23,13 @@ from tltlc.core.record import record
 from tltlc.monitor import Monitor
 
 TIMED: Final = ("generated", "no_registers", "generated_verdict", "without_timers", "by_hand", "verdict_only")
-MACROS: Final = {"no_registers": "TLTL_NO_REGISTERS", "generated_verdict": "TLTL_VERDICT_ONLY"}
-"""The macros with which a generated monitor is compiled."""
+MACROS: Final = {
+    "generated": ("TLTL_SPARSE",),
+    "no_registers": ("TLTL_SPARSE", "TLTL_NO_REGISTERS"),
+    "generated_verdict": ("TLTL_SPARSE", "TLTL_VERDICT_ONLY"),
+    "without_timers": ("TLTL_SPARSE",),
+}
+"""The macros with which generated monitors are compiled: as handwritten ones, they do not refuse a missing bool."""
 LONGEST_RUN_S: Final = 600.0
 _STATE: Final = 6
 """The place of the state in a row of a monitor that computes every field."""
@@ -54,7 +59,7 @@ def build(name: str, folder: Path, traces: Sequence[Trace]) -> Program:
         )
         task = Task(author, tuple(Signal(signal, field(signal), True) for signal in its_signals), folder / author)
         task.folder.mkdir()
-        if author in ("generated", "without_timers", *MACROS):
+        if author in MACROS:
             for file, content in emit("c", of).items():
                 (task.folder / file).write_text(str(content), encoding="utf-8")
             fill(bounds / "generated.h", task, spec=of.name)
@@ -68,7 +73,7 @@ def build(name: str, folder: Path, traces: Sequence[Trace]) -> Program:
         for file in ("pass.c", "pass.h"):
             shutil.copy(bounds / file, task.folder)
         defines = [f'-DADAPTER="{adapter}"', f"-DWHO={author}", f"-DCOLUMNS={len(task.signals)}"]
-        defines += [f"-D{MACROS[author]}"] if author in MACROS else []
+        defines += [f"-D{macro}" for macro in MACROS.get(author, ())]
         make(task, *_FLAGS, *defines, "-c", "pass.c", "-o", f"../{author}.o")
         for place, trace in enumerate(its_traces):
             write_trace(task, trace, folder / f"{author}_{place}.txt")

@@ -125,8 +125,9 @@ Monitors in millions of steps per second, on a trace of {bounds.SAMPLES:,} sampl
 {bounds.ROUNDS} rounds for C, and of {bounds.PYTHON_ROUNDS} for Python, and in brackets the medians of the ratios of the
 first, second and third row to this one. The second is compiled with `-DTLTL_NO_REGISTERS`: a game cannot read its
 registers, as it cannot read those of a handwritten one. The third is compiled with `-DTLTL_VERDICT_ONLY`: its results
-have only state and verdict. All are compiled with `-O2 -falign-functions=64`. *timers as signals* is the same automaton
-whose timers are Boolean signals: it counts nothing.
+have only state and verdict. All are compiled with `-O2 -falign-functions=64`, and generated ones with `-DTLTL_SPARSE`:
+no handwritten monitor refuses a sample with a missing bool. *timers as signals* is the same automaton whose timers are
+Boolean signals: it counts nothing.
 Both handwritten monitors keep a counter per clause (`benchmarks/handwritten/c/bounds`). One computes nothing but the
 verdict, as Copilot and R2U2 do; the other every field of a step, with robustness and limiting atom. All verdicts were
 compared with those of `tltlc.monitor` at each step of this trace and of {bounds.RANDOM_TRACES} random ones, and all

@@ -46,8 +46,9 @@ def section(store: Store) -> str:
 
 `python -m benchmarks --only {engine_speed.SECTION}` compares the monitors that `tltlc compile -t` writes for engines
 with handwritten ones in the same language (`benchmarks/handwritten/LANGUAGE`). A good programmer would write those
-for the same interface: they compute every field of a step, and refuse signals that are missing or not finite, and
-exclusive atoms that hold at once. They compute only the predicates that their state needs, and give no notices of
+for the same interface: they compute every field of a step, and refuse numbers that are missing or not finite, and
+exclusive atoms that hold at once. Generated monitors also refuse bools that are missing, but not in C and C++, where
+they are compiled with `-DTLTL_SPARSE`. They compute only the predicates that their state needs, and give no notices of
 clamped values. One driver steps both over the recorded trace of the spec, in {monitors.ROUNDS} rounds. C, C++, C# and
 Rust are compiled with optimisation, and no compiler sees the trace. Before that, each field of each step was
 compared. A cell has the millions of steps per second of the generated monitor (CPU time), and in brackets the median

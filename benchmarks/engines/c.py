@@ -9,6 +9,8 @@ from functools import partial
 from benchmarks.engines.engine import BY_HAND, DRIVERS, Engine, Task, fill, make
 
 _AUTHORS = ("generated", "by_hand")
+_MACROS = {"generated": ("-DTLTL_SPARSE",), "by_hand": ()}
+"""As handwritten monitors, generated ones do not refuse a missing bool."""
 
 
 def _build(compiler: tuple[str, ...], task: Task) -> tuple[str, ...]:
@@ -20,7 +22,8 @@ def _build(compiler: tuple[str, ...], task: Task) -> tuple[str, ...]:
         fill(file, task, spec=task.name, by_hand=str(BY_HAND / "c"), assignments=assignments)
     flags = (*compiler, "-O2", "-Wall", "-Wextra", "-Werror", f"-DCOLUMNS={len(task.signals)}")
     for author in _AUTHORS:
-        make(task, *flags, f'-DADAPTER="{author}.h"', f"-DWHO={author}", "-c", "pass.c", "-o", f"{author}.o")
+        defines = (*_MACROS[author], f'-DADAPTER="{author}.h"', f"-DWHO={author}")
+        make(task, *flags, *defines, "-c", "pass.c", "-o", f"{author}.o")
     make(task, *flags, "-c", "driver.c", "-o", "driver.o")
     make(task, compiler[0], "driver.o", *(f"{author}.o" for author in _AUTHORS), "-o", "driver", "-lm")
     return ("./driver",)
@@ -31,7 +34,8 @@ def _compiled_sizes(compiler: tuple[str, ...], task: Task) -> Mapping[str, Mappi
     for author in _AUTHORS:
         sizes[author] = {}
         for level in ("-O2", "-Os"):
-            make(task, *compiler, level, f'-DADAPTER="{author}.h"', "-c", "object.c", "-o", "object.o")
+            defines = (*_MACROS[author], f'-DADAPTER="{author}.h"')
+            make(task, *compiler, level, *defines, "-c", "object.c", "-o", "object.o")
             output = subprocess.run(["size", "object.o"], cwd=task.folder, capture_output=True, text=True, check=True)
             text, data, *_ = output.stdout.splitlines()[1].split()
             sizes[author][f"{compiler[0]} {level}"] = int(text) + int(data)

@@ -40,6 +40,14 @@ static inline bool monitor_step(Monitor *monitor, const Signals *signals, Result
         "F(open_right & near(e_right) | open_left & near(e_left)) & G alive",
         "G alive",
     };
+    static const char *const english[] = {
+        "Reach near(s1), then near(s2), then near(s3), then (open_right and near(e_right)) or (open_left and near(e_left)), and keep alive throughout.",
+        "Reach near(s2), then near(s3), then (open_right and near(e_right)) or (open_left and near(e_left)), and keep alive throughout.",
+        "The spec is violated.",
+        "Reach near(s3), then (open_right and near(e_right)) or (open_left and near(e_left)), and keep alive throughout.",
+        "Reach (open_right and near(e_right)) or (open_left and near(e_left)), and keep alive throughout.",
+        "Keep alive throughout.",
+    };
     static const Verdict verdicts[] = {PENDING, PENDING, VIOLATED, PENDING, PENDING, HOLDING};
     static const int next[] = {1, 3, -1, 4};
     const char *const refusal = branching_refusal(signals);
@@ -105,12 +113,14 @@ static inline bool monitor_step(Monitor *monitor, const Signals *signals, Result
     monitor->done = monitor->done || state == BRANCHING_TRAP || state == BRANCHING_GOAL || monitor->steps >= BRANCHING_LIMIT;
     result->state = state;
     result->label = labels[state];
+    result->label_english = english[state];
     result->verdict = verdicts[state];
     result->accepting = state == BRANCHING_GOAL;
     result->done = monitor->done;
     result->progress = best;
     result->reward = reward;
     result->robustness = robustness;
+    monitor_tell(monitor, state == BRANCHING_TRAP, result);
     return true;
 }
 

@@ -19,6 +19,10 @@ typedef struct {
     double reward;
     double robustness;
     const char *limiting;    // NULL for none
+    const char *label_english;
+    const char *failed_clause;    // NULL for none
+    const char *failed_atom;      // NULL for none
+    int failed_step;              // 0 for none
 } Result;
 
 typedef struct {
@@ -27,6 +31,7 @@ typedef struct {
     int steps;
     double progress;
     bool done;
+    int failed_step;
     const char *problem;    // why the last sample was refused
 } Monitor;
 
@@ -40,6 +45,7 @@ static inline void monitor_reset(Monitor *monitor) {
     monitor->steps = 0;
     monitor->progress = 0.0;
     monitor->done = false;
+    monitor->failed_step = 0;
     monitor->problem = NULL;
 }
 
@@ -51,6 +57,14 @@ static inline void monitor_init(Monitor *monitor, double level_size) {
 static inline bool monitor_refuse(Monitor *monitor, const char *problem) {
     monitor->problem = problem;
     return false;
+}
+
+// Writes what the trace fails at after a step: in the trap, the one clause that a trace must not break.
+static inline void monitor_tell(Monitor *monitor, bool trapped, Result *result) {
+    if (trapped && !monitor->failed_step) monitor->failed_step = monitor->steps;
+    result->failed_clause = trapped ? "keep alive" : NULL;
+    result->failed_atom = trapped ? "alive" : NULL;
+    result->failed_step = monitor->failed_step;
 }
 
 // Closeness in [-1, 1]: 1 at the target, 0 at 1 m, -1 from level_size on.

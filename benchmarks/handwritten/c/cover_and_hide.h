@@ -26,6 +26,13 @@ static inline bool monitor_step(Monitor *monitor, const Signals *signals, Result
         "F near(exit) & G alive",
         "G alive",
     };
+    static const char *const english[] = {
+        "Reach near(s1), then near(s2), then near(exit), and keep alive throughout.",
+        "Reach near(s2), then near(exit), and keep alive throughout.",
+        "The spec is violated.",
+        "Reach near(exit), and keep alive throughout.",
+        "Keep alive throughout.",
+    };
     static const Verdict verdicts[] = {PENDING, PENDING, VIOLATED, PENDING, HOLDING};
     static const int place_of[] = {0, 1, -1, 2, -1};
     static const int next[] = {1, 3, -1, 4, -1};
@@ -86,12 +93,14 @@ static inline bool monitor_step(Monitor *monitor, const Signals *signals, Result
                     monitor->steps >= COVER_AND_HIDE_LIMIT;
     result->state = state;
     result->label = labels[state];
+    result->label_english = english[state];
     result->verdict = verdicts[state];
     result->accepting = state == COVER_AND_HIDE_GOAL;
     result->done = monitor->done;
     result->progress = best;
     result->reward = reward;
     result->robustness = robustness;
+    monitor_tell(monitor, state == COVER_AND_HIDE_TRAP, result);
     return true;
 }
 

@@ -23,6 +23,12 @@ static inline bool monitor_step(Monitor *monitor, const Signals *signals, Result
         "F near(exit)",
         "true",
     };
+    static const char *const english[] = {
+        "Reach near(s1), then near(s2), then near(exit).",
+        "Reach near(s2), then near(exit).",
+        "Reach near(exit).",
+        "Nothing remains to be done.",
+    };
     const double distances[] = {signals->distance_s1, signals->distance_s2, signals->distance_exit};
     if (!isfinite(distances[0])) return monitor_refuse(monitor, "distance(s1) is not finite");
     if (!isfinite(distances[1])) return monitor_refuse(monitor, "distance(s2) is not finite");
@@ -52,11 +58,15 @@ static inline bool monitor_step(Monitor *monitor, const Signals *signals, Result
     monitor->done = monitor->done || state == NAVIGATION_GOAL || monitor->steps >= NAVIGATION_LIMIT;
     result->state = state;
     result->label = labels[state];
+    result->label_english = english[state];
     result->verdict = state == NAVIGATION_GOAL ? SATISFIED : PENDING;
     result->accepting = state == NAVIGATION_GOAL;
     result->done = monitor->done;
     result->progress = best;
     result->robustness = robustness;
+    result->failed_clause = NULL;
+    result->failed_atom = NULL;
+    result->failed_step = 0;
     return true;
 }
 

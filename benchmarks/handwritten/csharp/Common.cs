@@ -24,6 +24,23 @@ namespace ByHand
         public double Reward;
         public double Robustness;
         public string Limiting;
+        public int FailedStep;    // 0 for none
+
+        public string LabelEnglish
+        {
+            get { return Monitor.English[State]; }
+        }
+
+        // A trace fails only at the one clause that it must not break.
+        public string FailedClause
+        {
+            get { return FailedStep == 0 ? null : "keep alive"; }
+        }
+
+        public string FailedAtom
+        {
+            get { return FailedStep == 0 ? null : "alive"; }
+        }
     }
 
     /// <summary>An automaton that runs over one episode after another.</summary>
@@ -34,6 +51,7 @@ namespace ByHand
         protected double Progress;
         protected bool Done;
         private int _steps;
+        protected int FailedStep;
 
         protected Episode(double levelSize)
         {
@@ -46,12 +64,14 @@ namespace ByHand
             Progress = 0.0;
             Done = false;
             _steps = 0;
+            FailedStep = 0;
         }
 
         /// <summary>Count a step with this progress; returns its reward.</summary>
         protected double Advance(double progress, bool violated, bool ends, int limit)
         {
             _steps++;
+            if (violated && FailedStep == 0) FailedStep = _steps;
             double best = progress > Progress ? progress : Progress;
             double reward = 0.0;
             if (!Done)

@@ -35,6 +35,16 @@ namespace ByHand
             "G alive",
         };
 
+        public static readonly string[] English =
+        {
+            "Reach near(s1), then near(s2), then near(s3), then (open_right and near(e_right)) or (open_left and near(e_left)), and keep alive throughout.",
+            "Reach near(s2), then near(s3), then (open_right and near(e_right)) or (open_left and near(e_left)), and keep alive throughout.",
+            "The spec is violated.",
+            "Reach near(s3), then (open_right and near(e_right)) or (open_left and near(e_left)), and keep alive throughout.",
+            "Reach (open_right and near(e_right)) or (open_left and near(e_left)), and keep alive throughout.",
+            "Keep alive throughout.",
+        };
+
         private static readonly Verdict[] Verdicts =
         {
             Verdict.Pending, Verdict.Pending, Verdict.Violated, Verdict.Pending, Verdict.Pending, Verdict.Holding
@@ -116,6 +126,7 @@ namespace ByHand
             result.Reward = Advance(progress, State == Trap, State == Trap || State == Goal, Limit);
             result.State = State;
             result.Label = Labels[State];
+            result.FailedStep = FailedStep;
             result.Verdict = Verdicts[State];
             result.Done = Done;
             result.Progress = Progress;

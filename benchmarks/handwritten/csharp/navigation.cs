@@ -24,6 +24,14 @@ namespace ByHand
             "true",
         };
 
+        public static readonly string[] English =
+        {
+            "Reach near(s1), then near(s2), then near(exit).",
+            "Reach near(s2), then near(exit).",
+            "Reach near(exit).",
+            "Nothing remains to be done.",
+        };
+
         public Monitor(double levelSize = 20.0) : base(levelSize)
         {
         }

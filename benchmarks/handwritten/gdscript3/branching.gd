@@ -11,6 +11,14 @@ const LABELS = [
 	"F(open_right & near(e_right) | open_left & near(e_left)) & G alive",
 	"G alive",
 ]
+const ENGLISH = [
+	"Reach near(s1), then near(s2), then near(s3), then (open_right and near(e_right)) or (open_left and near(e_left)), and keep alive throughout.",
+	"Reach near(s2), then near(s3), then (open_right and near(e_right)) or (open_left and near(e_left)), and keep alive throughout.",
+	"The spec is violated.",
+	"Reach near(s3), then (open_right and near(e_right)) or (open_left and near(e_left)), and keep alive throughout.",
+	"Reach (open_right and near(e_right)) or (open_left and near(e_left)), and keep alive throughout.",
+	"Keep alive throughout.",
+]
 const VERDICTS = [
 	Verdict.PENDING,
 	Verdict.PENDING,
@@ -112,3 +120,7 @@ func _leave(sample: Sample, alive: float) -> float:
 
 func label() -> String:
 	return LABELS[state]
+
+
+func label_english() -> String:
+	return ENGLISH[state]

@@ -14,6 +14,7 @@ var progress: float = 0.0
 var reward: float = 0.0
 var robustness: float = 0.0
 var limiting: String = ""
+var failed_step: int = 0
 var problem: String = ""  # why the last sample was refused
 
 
@@ -27,12 +28,15 @@ func reset():
 	reward = 0.0
 	robustness = 0.0
 	limiting = ""
+	failed_step = 0
 	problem = ""
 
 
 # Counts a step with this progress.
 func _advance(reached: float, ends: bool, limit: int):
 	steps += 1
+	if verdict == Verdict.VIOLATED and failed_step == 0:
+		failed_step = steps
 	var gained: float = reached - progress if reached > progress else 0.0
 	progress += gained
 	if done:
@@ -47,6 +51,16 @@ func _advance(reached: float, ends: bool, limit: int):
 func _refuse(reason: String) -> bool:
 	problem = reason
 	return false
+
+
+# The clause that the trace broke, the only one that it must not break; empty for none.
+func failed_clause() -> String:
+	return "keep alive" if failed_step > 0 else ""
+
+
+# The atom that decides it; empty for none.
+func failed_atom() -> String:
+	return "alive" if failed_step > 0 else ""
 
 
 # Closeness in [-1, 1]: 1 at the target, 0 at 1 m, -1 from level_size on.

@@ -11,6 +11,13 @@ const LABELS = [
 	"F near(exit) & G alive",
 	"G alive",
 ]
+const ENGLISH = [
+	"Reach near(s1), then near(s2), then near(exit), and keep alive throughout.",
+	"Reach near(s2), then near(exit), and keep alive throughout.",
+	"The spec is violated.",
+	"Reach near(exit), and keep alive throughout.",
+	"Keep alive throughout.",
+]
 const VERDICTS = [Verdict.PENDING, Verdict.PENDING, Verdict.VIOLATED, Verdict.PENDING, Verdict.HOLDING]
 const PLACE = [0, 1, -1, 2, -1]
 const NEXT = [1, 3, -1, 4, -1]
@@ -83,3 +90,7 @@ func step(sample: Sample) -> bool:
 
 func label() -> String:
 	return LABELS[state]
+
+
+func label_english() -> String:
+	return ENGLISH[state]

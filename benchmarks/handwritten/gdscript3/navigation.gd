@@ -9,6 +9,12 @@ const LABELS = [
 	"F near(exit)",
 	"true",
 ]
+const ENGLISH = [
+	"Reach near(s1), then near(s2), then near(exit).",
+	"Reach near(s2), then near(exit).",
+	"Reach near(exit).",
+	"Nothing remains to be done.",
+]
 const GOAL = 3
 const LIMIT = 300
 
@@ -55,3 +61,7 @@ func step(sample: Sample) -> bool:
 
 func label() -> String:
 	return LABELS[state]
+
+
+func label_english() -> String:
+	return ENGLISH[state]

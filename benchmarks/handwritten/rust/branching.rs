@@ -11,6 +11,14 @@ const LABELS: [&str; 6] = [
     "F(open_right & near(e_right) | open_left & near(e_left)) & G alive",
     "G alive",
 ];
+const ENGLISH: [&str; 6] = [
+    "Reach near(s1), then near(s2), then near(s3), then (open_right and near(e_right)) or (open_left and near(e_left)), and keep alive throughout.",
+    "Reach near(s2), then near(s3), then (open_right and near(e_right)) or (open_left and near(e_left)), and keep alive throughout.",
+    "The spec is violated.",
+    "Reach near(s3), then (open_right and near(e_right)) or (open_left and near(e_left)), and keep alive throughout.",
+    "Reach (open_right and near(e_right)) or (open_left and near(e_left)), and keep alive throughout.",
+    "Keep alive throughout.",
+];
 const VERDICTS: [Verdict; 6] =
     [Verdict::Pending, Verdict::Pending, Verdict::Violated, Verdict::Pending, Verdict::Pending, Verdict::Holding];
 const TRAP: usize = 2;
@@ -121,6 +129,16 @@ impl Monitor {
             reward,
             robustness,
             limiting,
+            failed_clause: trapped.then_some("keep alive"),
+            failed_atom: trapped.then_some("alive"),
+            failed_step: self.episode.failed_step,
         })
+    }
+}
+
+impl Step {
+    /// The label in words.
+    pub fn label_english(&self) -> &'static str {
+        ENGLISH[self.state]
     }
 }

@@ -1,5 +1,7 @@
 //! The parts that the handwritten monitors share: their result, the reward, and closeness.
 
+use std::num::NonZeroU32;
+
 /// What the verdict would be if the trace ended here.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
@@ -21,6 +23,9 @@ pub struct Step {
     pub reward: f64,
     pub robustness: f64,
     pub limiting: Option<&'static str>,
+    pub failed_clause: Option<&'static str>,
+    pub failed_atom: Option<&'static str>,
+    pub failed_step: Option<NonZeroU32>,
 }
 
 /// A sample that cannot be taken; the state stays.
@@ -36,6 +41,7 @@ pub struct Episode {
     pub steps: u32,
     pub progress: f64,
     pub done: bool,
+    pub failed_step: Option<NonZeroU32>,
 }
 
 impl Episode {
@@ -52,6 +58,9 @@ impl Episode {
             }
         }
         self.progress = best;
+        if violated && self.failed_step.is_none() {
+            self.failed_step = NonZeroU32::new(self.steps);
+        }
         self.done = self.done || ends || self.steps >= limit;
         reward
     }

@@ -11,6 +11,13 @@ const LABELS: [&str; 5] = [
     "F near(exit) & G alive",
     "G alive",
 ];
+const ENGLISH: [&str; 5] = [
+    "Reach near(s1), then near(s2), then near(exit), and keep alive throughout.",
+    "Reach near(s2), then near(exit), and keep alive throughout.",
+    "The spec is violated.",
+    "Reach near(exit), and keep alive throughout.",
+    "Keep alive throughout.",
+];
 const VERDICTS: [Verdict; 5] =
     [Verdict::Pending, Verdict::Pending, Verdict::Violated, Verdict::Pending, Verdict::Holding];
 const TRAP: usize = 2;
@@ -97,6 +104,16 @@ impl Monitor {
             reward,
             robustness,
             limiting,
+            failed_clause: trapped.then_some("keep alive"),
+            failed_atom: trapped.then_some("alive"),
+            failed_step: self.episode.failed_step,
         })
+    }
+}
+
+impl Step {
+    /// The label in words.
+    pub fn label_english(&self) -> &'static str {
+        ENGLISH[self.state]
     }
 }

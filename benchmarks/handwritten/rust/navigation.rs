@@ -9,6 +9,12 @@ const LABELS: [&str; 4] = [
     "F near(exit)",
     "true",
 ];
+const ENGLISH: [&str; 4] = [
+    "Reach near(s1), then near(s2), then near(exit).",
+    "Reach near(s2), then near(exit).",
+    "Reach near(exit).",
+    "Nothing remains to be done.",
+];
 const GOAL: usize = 3;
 const LIMIT: u32 = 300;
 
@@ -72,6 +78,16 @@ impl Monitor {
             reward,
             robustness,
             limiting,
+            failed_clause: None,
+            failed_atom: None,
+            failed_step: None,
         })
+    }
+}
+
+impl Step {
+    /// The label in words.
+    pub fn label_english(&self) -> &'static str {
+        ENGLISH[self.state]
     }
 }

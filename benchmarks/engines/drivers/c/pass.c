@@ -47,7 +47,10 @@ static void print(void) {
         printf("%s\t%d\t%s\t%s\t", TEXT(WHO), result->state, result->label, verdict_name(result->verdict));
         printf("%s\t%s\t", result->accepting ? "true" : "false", result->done ? "true" : "false");
         printf("%.17g\t%.17g\t%.17g\t", result->progress, result->reward, result->robustness);
-        printf("%s\n", result->limiting ? result->limiting : "");
+        const char *const names[] = {result->limiting, result->label_english, result->failed_clause, result->failed_atom};
+        for (int place = 0; place < 4; place++) printf("%s\t", names[place] ? names[place] : "");
+        if (result->failed_step) printf("%lld", (long long)result->failed_step);
+        putchar('\n');
     }
 }
 

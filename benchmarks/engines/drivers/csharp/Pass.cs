@@ -39,7 +39,8 @@ public sealed class @PASS@ : Pass
                 "@WHO@", result.State.ToString(CultureInfo.InvariantCulture), result.Label,
                 result.Verdict.ToString().ToLowerInvariant(), result.Accepting ? "true" : "false",
                 result.Done ? "true" : "false", Exact(result.Progress), Exact(result.Reward),
-                Exact(result.Robustness), result.Limiting
+                Exact(result.Robustness), result.Limiting, result.LabelEnglish, result.FailedClause,
+                result.FailedAtom, result.FailedStep > 0 ? result.FailedStep.ToString() : ""
             };
             Console.WriteLine(string.Join("\t", cells));
         }

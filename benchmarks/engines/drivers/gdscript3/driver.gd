@@ -47,7 +47,8 @@ func _rows(who: int, samples: Array):
 		var cells: Array = [WHO[who], str(monitor.state), monitor.label(), VERDICTS[monitor.verdict]]
 		cells += ["true" if monitor.accepting else "false", "true" if monitor.done else "false"]
 		cells += ["%.17f" % monitor.progress, "%.17f" % monitor.reward, "%.17f" % monitor.robustness]
-		cells.append(monitor.limiting_atom() if who == 0 else monitor.limiting)
+		cells += [monitor.limiting_atom() if who == 0 else monitor.limiting, monitor.label_english()]
+		cells += [monitor.failed_clause(), monitor.failed_atom(), str(monitor.failed_step) if monitor.failed_step else ""]
 		print(PoolStringArray(cells).join("\t"))
 
 

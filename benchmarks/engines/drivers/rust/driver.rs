@@ -66,7 +66,9 @@ macro_rules! pass {
                     let verdict = format!("{:?}", step.verdict).to_lowercase();
                     print!("{}\t{}\t{}\t{verdict}\t", stringify!($name), step.state, step.label);
                     print!("{}\t{}\t{:?}\t{:?}\t", step.accepting, step.done, step.progress, step.reward);
-                    println!("{:?}\t{}", step.robustness, step.limiting.unwrap_or(""));
+                    print!("{:?}\t{}\t{}\t", step.robustness, step.limiting.unwrap_or(""), step.label_english());
+                    print!("{}\t{}\t", step.failed_clause.unwrap_or(""), step.failed_atom.unwrap_or(""));
+                    println!("{}", step.failed_step.map_or(String::new(), |number| number.to_string()));
                 }
             }
         }

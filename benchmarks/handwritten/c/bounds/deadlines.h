@@ -2,7 +2,7 @@
 
 #include "results.h"
 
-typedef struct { short alarm, hidden, out; } Signals;
+typedef struct { bool alarm, hidden, out; } Signals;
 typedef struct { uint16_t alarm, hidden; Verdict verdict; History history; } Monitor;
 
 static inline void monitor_reset(Monitor *monitor) {
@@ -21,7 +21,6 @@ static inline bool monitor_step(Monitor *monitor, const Signals *sample, Result 
         {"keep alarm implies eventually within 5 s hidden", "late(5 s, alarm, hidden)"},
         {"keep hidden implies eventually within 5 s out", "late(5 s, hidden, out)"},
     };
-    if ((sample->alarm | sample->hidden | sample->out) < 0) return false;
     monitor->history.steps++;
     monitor->alarm = waited(monitor->alarm, sample->alarm, sample->hidden, 601);
     monitor->hidden = waited(monitor->hidden, sample->hidden, sample->out, 601);

@@ -2,7 +2,7 @@
 
 #include "verdicts.h"
 
-typedef struct { short alarm, hidden, out; } Signals;
+typedef struct { bool alarm, hidden, out; } Signals;
 typedef unsigned char Result;
 typedef struct { uint16_t alarm, hidden; bool violated; } Monitor;
 
@@ -11,7 +11,6 @@ static inline void monitor_reset(Monitor *monitor) {
 }
 
 static inline bool monitor_step(Monitor *monitor, const Signals *sample, Result *result) {
-    if ((sample->alarm | sample->hidden | sample->out) < 0) return false;
     monitor->alarm = waited(monitor->alarm, sample->alarm, sample->hidden, 301);
     monitor->hidden = waited(monitor->hidden, sample->hidden, sample->out, 301);
     monitor->violated |= monitor->alarm > 300 || monitor->hidden > 300;

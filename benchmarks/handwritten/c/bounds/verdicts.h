@@ -12,8 +12,6 @@ typedef enum { HOLDING, PENDING, VIOLATED } Verdict;
 
 static const char *const verdict_names[] = {"holding", "pending", "violated"};
 
-// A bool of a sample that is missing is negative, and then so are all of them together: `-1 | 0 | 1` is -1.
-
 // How many samples a request has waited for its answer, itself included; 0 if no request is open.
 static inline uint16_t waited(uint16_t waiting, bool request, bool answer, uint16_t most) {
     if (answer) return 0;
