@@ -38,7 +38,7 @@ CASES: Final = "cases"
 """The name of the folder, in the folder of a run, that has a folder for each case."""
 
 _REPORT: Final = "case.json"
-_VERSION: Final = 6
+_VERSION: Final = 7
 _RECORDINGS: Final = 3
 """At most this many episodes of each finding are stored as recordings."""
 

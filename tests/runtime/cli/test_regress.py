@@ -31,7 +31,7 @@ def test_the_text_report(tltlc: Run, game: Path) -> None:  # noqa: F811
     result = tltlc("regress", "game.toml", "--out", "new", *ONE)
     assert result.status == 1
     sentence, *lines = result.out.splitlines()
-    assert sentence == "1 of 3 levels is not finished by its agent, as before; 2 play as before"
+    assert sentence == "1 of 3 cases is not finished by its agent, as before; 2 play as before"
     assert verdicts(result.out) == ["hopeless fail", "room:v0 pass", "room:v1 pass"]
     assert lines[0].startswith("hopeless  fail      0 of 25     0%  progress")
     end = next(line for line, text in enumerate(lines) if text.startswith("room:v0"))
@@ -291,7 +291,7 @@ def test_a_level_that_does_not_load_fails_its_cases(tltlc: Run, game: Path) -> N
     Path("room.toml").write_text(text.replace("[start]", "[strat]"), encoding="utf-8")
     result = tltlc("regress", "game.toml", "--github", *ONE, "--changed", "room.toml")
     sentence, _, cases = result.out.partition("\n")
-    assert sentence == "3 of 3 levels cannot be played"
+    assert sentence == "3 of 3 cases cannot be played"
     assert cases.startswith("room:v0   fail\n    it cannot be played\n    room.toml:")
     commands = [line for line in result.out.splitlines() if line.startswith("::error file=room.toml,")]
     assert len(commands) == 3

@@ -33,7 +33,7 @@ def test_the_sentence_comes_first_then_failures_then_reviews() -> None:
     reports = [report("pass"), report("review"), report("fail"), replace(report("review"), name="long name")]
     lines = [unstyle(line) for line in report_lines([FinishedCase(each, is_cached=False) for each in reports], 2)]
     assert lines == [
-        "1 of 4 levels cannot be played; 2 may have changed; 1 plays as before; 2 were not judged",
+        "1 of 4 cases cannot be played; 2 may have changed; 1 plays as before; 2 were not judged",
         "a          fail",
         "a          review",
         "long name  review",

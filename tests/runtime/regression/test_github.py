@@ -90,7 +90,7 @@ def test_failures_come_first_and_a_new_failure_in_a_pass_is_a_notice(suite: Suit
     failed = replace(passed, verdict="fail")
     sentence, first, second = workflow_commands(suite, [passed, failed], Path(".."), not_judged=3)
     assert sentence == (
-        "::notice title=game::1 of 2 levels cannot be played; 1 plays as before, with a new failure; 3 were not judged"
+        "::notice title=game::1 of 2 cases cannot be played; 1 plays as before, with a new failure; 3 were not judged"
     )
     assert first.startswith("::error ") and second.startswith("::notice file=game/levels/room.toml,")
     assert second.endswith(

@@ -73,7 +73,7 @@ def read(reports: tuple[CaseReport, ...]) -> ET.Element:
 def test_the_suite_has_its_result_in_a_sentence() -> None:
     (tests,) = read((GOOD, DOUBTED, BAD))
     assert tests[-1].tag == "system-out"
-    assert tests[-1].text == "1 of 3 levels cannot be played; 1 may have changed; 1 plays as before"
+    assert tests[-1].text == "1 of 3 cases cannot be played; 1 may have changed; 1 plays as before"
     (tests,) = ET.fromstring(junit(SUITE, (GOOD,), ("room:v1",), left_out=1).encode())
     assert tests[-1].text == "The level plays as before; 2 were not judged"
 

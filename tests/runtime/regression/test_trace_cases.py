@@ -82,7 +82,7 @@ def test_a_broken_build_fails_and_the_clause_is_named(tltlc: Run, here: Path) ->
     result = regress(tltlc, "--baseline", "old", "--now", "new")
     assert result.status == 1
     sentence, first, *reasons, last = result.out.splitlines()
-    assert sentence == "The set of traces no longer meets its spec"
+    assert sentence == "70 of 100 traces do not meet the spec; before: 5 of 100"
     assert first.startswith("fetch  fail     30 of 100")
     assert last == "1 case: 1 fail"
     assert "    met in 30 of 100 traces (30%), before in 95 of 100 (95%): certainly in less than 50%" in reasons
@@ -95,6 +95,15 @@ def test_a_broken_build_fails_and_the_clause_is_named(tltlc: Run, here: Path) ->
     assert short.strip().startswith(
         "ends before `reach has_key then at_exit` is met in 5 of 100 traces (5%); before: in 5 of 100 traces (5%)"
     )
+
+
+def test_the_sentence_counts_the_traces_that_break_the_spec(tltlc: Run, here: Path) -> None:  # noqa: F811
+    write_traces(here / "clean", (30, WON))
+    write_traces(here / "burnt", (10, WON), (20, BURNT))
+    result = regress(tltlc, "--baseline", "clean", "--now", "burnt")
+    sentence, first, *_ = result.out.splitlines()
+    assert sentence == "20 of 30 traces break the spec; before: none"
+    assert first.startswith("fetch  review   10 of 30")
 
 
 def test_fewer_than_25_traces_need_a_review(tltlc: Run, here: Path) -> None:  # noqa: F811
@@ -111,6 +120,7 @@ def test_a_trace_that_cannot_be_judged_needs_a_review(tltlc: Run, here: Path) ->
     (here / "old" / "bad.csv").write_text("time,on_lava,has_key\n0.0,0,0\n", encoding="utf-8")
     result = regress(tltlc, "--baseline", "old", "--now", "old")
     assert cases(result).startswith("fetch  review   95 of 100")
+    assert result.out.startswith("5 of 100 traces do not meet the spec; before: 5 of 100; 1 cannot be judged\n")
     assert "1 of 101 traces cannot be judged: first `old/bad.csv` (old/bad.csv:1: TLT0" in result.out
     assert "1 of 101 traces of the baseline cannot be judged" in result.out
 
@@ -264,7 +274,7 @@ def test_the_reports_have_the_same_verdict(tltlc: Run, here: Path) -> None:  # n
     files = ("--json", "report.json", "--junit", "report.xml", "--html", "report.html", "--github")
     result = regress(tltlc, "--baseline", "old", "--now", "new", *files)
     sentence, annotation = (line for line in result.out.splitlines() if line.startswith("::"))
-    assert sentence == "::notice title=fetch::The set of traces no longer meets its spec"
+    assert sentence == "::notice title=fetch::70 of 100 traces do not meet the spec; before: 5 of 100"
     assert annotation.startswith("::error file=fetch.tltl,title=fetch%3A fail::breaks `avoid on_lava` at step 2")
     assert "met in 30 of 100 traces" in annotation
     document = json.loads((here / "report.json").read_text(encoding="utf-8"))

@@ -26,15 +26,36 @@ _UNCHANGED: Final = (
 )
 
 
-CaseStatus = Literal["unfinished", "impossible", "unplayable", "unfinished_before", "changed", "uncertain", "as_before"]
+CaseStatus = Literal[
+    "unfinished",
+    "impossible",
+    "much_less_often",
+    "unplayable",
+    "unfinished_before",
+    "too_seldom_before",
+    "outdated",
+    "less_often",
+    "changed",
+    "uncertain",
+    "low_rate",
+    "as_before",
+]
 """What has become of a case.
 
-- ``unfinished``: it fails, and passed more often in the baseline; ``impossible``: and certainly no player
-  can meet its spec;
+- ``unfinished``: it fails, no episode meets the spec, and episodes of the baseline do; ``impossible``: and
+  certainly no player can meet the spec;
+- ``much_less_often``: it fails, and some episodes meet the spec, but certainly a smaller share than in the
+  baseline;
 - ``unplayable``: it fails because it cannot be played or judged;
-- ``unfinished_before``: it fails, but perhaps no more often than in the baseline;
-- ``changed`` or ``uncertain``: it needs a review, because it has certainly changed, or because too little
-  is certain;
+- ``unfinished_before``: it fails, and no episode meets the spec, now as in the baseline;
+- ``too_seldom_before``: it fails, but perhaps no more often than in the baseline;
+- ``outdated``: the spec has changed since the policy was trained, so the verdict is about the old spec;
+- ``less_often``: it needs a review, and certainly a smaller share of episodes meets the spec than in the
+  baseline;
+- ``changed``: it needs a review, because something else has certainly changed;
+- ``uncertain``: it needs a review, because it may have changed;
+- ``low_rate``: it needs a review only because it is not certain that enough episodes meet the spec; nothing
+  has changed that counts;
 - ``as_before``: it passes.
 """
 
@@ -44,10 +65,12 @@ class TraceNames:
     """The ``names`` of recorded traces, in the order of their indices.
 
     ``place`` lists the files and folders that contain the traces, for example ``traces/old, a.csv``.
+    ``unread`` is the number of traces there that cannot be judged; they are not in ``names``.
     """
 
     place: str
     names: tuple[str, ...]
+    unread: int = 0
 
 
 @record
@@ -127,6 +150,8 @@ class CaseReport:
     version_changes: tuple[str, ...] = ()
     new_failures: tuple[Finding, ...] = ()
     is_impossible: bool = False
+    is_outdated: bool = False
+    """Whether the spec has changed since the policy was trained, and the policy's old spec judges the case."""
 
     @property
     def headline(self) -> str:
@@ -163,13 +188,30 @@ class CaseReport:
         """What has become of the case, for people: see :data:`CaseStatus`."""
         if self.verdict == "pass":
             return "as_before"
-        if self.verdict == "review":
-            return "changed" if self.certain and self.figures else "uncertain"
         if self.figures is None:
-            return "unplayable"
+            return "unplayable" if self.verdict == "fail" else "uncertain"
+        if self.is_outdated:
+            return "outdated"
+        return self._failed_status(self.figures) if self.verdict == "fail" else self._reviewed_status()
+
+    def _failed_status(self, figures: Figures) -> CaseStatus:
+        is_never_met = figures.pass_rate == 0.0
         if self.baseline is not None and self.baseline.pass_rate <= self.rate_interval[1]:
-            return "unfinished_before"
+            is_never_met = is_never_met and self.baseline.pass_rate == 0.0
+            return "unfinished_before" if is_never_met else "too_seldom_before"
+        if not is_never_met:
+            return "much_less_often"
         return "impossible" if self.is_impossible else "unfinished"
+
+    def _reviewed_status(self) -> CaseStatus:
+        low, high = self.rate_interval
+        before = self.baseline.pass_rate if self.baseline else 1.0
+        if before > high:
+            return "less_often"
+        if self.changes or before < low:
+            return "changed"
+        # Before all reasons, traces have sentences that say why there is no verdict.
+        return "uncertain" if self.figure_changes or self.main else "low_rate"
 
 
 def report_on(result: JudgedCase) -> CaseReport:
@@ -219,6 +261,7 @@ def report_on(result: JudgedCase) -> CaseReport:
         edits=tuple(edit.text for edit in changes),
         version_changes=tuple(version_changes(played, reference)),
         is_impossible=bool(blocked) and level.game.is_infeasible(level, setup.fspa),
+        is_outdated=bool(outdated),
         mentions=union(sentence.mentions for sentence in (*blocked, *changes)),
         descriptions=result.prepared.changes,
         played=result.prepared.played,

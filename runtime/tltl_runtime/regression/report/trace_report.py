@@ -19,14 +19,14 @@ from tltl_runtime.regression.report.reason_order import telling_findings
 from tltl_runtime.regression.report.reasons import reasons
 from tltl_runtime.regression.suite.suite import LEAST_EPISODES
 from tltl_runtime.regression.suite.trace_case import TraceCase
-from tltl_runtime.regression.verdict.judged_traces import JudgedTraces, TraceSet
+from tltl_runtime.regression.verdict.judged_traces import NO_TRACES, JudgedTraces, TraceSet
 from tltlc.api import Diagnostic, TltlError, fileio
 
 
 def report_on_traces(judged: JudgedTraces) -> CaseReport:
     """Return the report on a case of recorded traces that were judged."""
     case, fspa, judgement = judged.case, judged.fspa, judged.judgement
-    names = _case_traces(case, fspa.name, judged.now.names, judged.before.names)
+    names = _case_traces(case, fspa.name, judged.now, judged.before)
     unread = (*_unread_texts(judged.now, ""), *_unread_texts(judged.before, " of the baseline"))
     warnings = (*_warning_texts(judged.now, ""), *_warning_texts(judged.before, " of the baseline"))
     if judgement is None:
@@ -81,12 +81,16 @@ def report_on_broken_traces(case: TraceCase, error: TltlError) -> CaseReport:
         causes,
         chosen_headline=": ".join(causes[:2]),
         fault_at=error_location(error),
-        traces=_case_traces(case, name or file, (), ()),
+        traces=_case_traces(case, name or file),
     )
 
 
-def _case_traces(case: TraceCase, spec: str, now: tuple[str, ...], before: tuple[str, ...]) -> CaseTraces:
-    return CaseTraces(spec, TraceNames(", ".join(case.traces), now), TraceNames(", ".join(case.baseline), before))
+def _case_traces(case: TraceCase, spec: str, now: TraceSet = NO_TRACES, before: TraceSet = NO_TRACES) -> CaseTraces:
+    return CaseTraces(
+        spec,
+        TraceNames(", ".join(case.traces), now.names, len(now.unread)),
+        TraceNames(", ".join(case.baseline), before.names, len(before.unread)),
+    )
 
 
 def _too_few_texts(judged: JudgedTraces) -> Iterator[str]:

@@ -47,6 +47,9 @@ class TraceSet:
     others: tuple[str, ...] = ()
 
 
+NO_TRACES: Final = TraceSet((), (), ())
+
+
 @record
 class JudgedTraces:
     """A case of recorded traces with its verdict.
