@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from tltlc.pipeline import CompileOptions, Session
     from tltlc.resolve.spec import ResolvedFile
     from tltlc.tools.judge.clauses import Clauses
+    from tltlc.tools.judge.failing_step import ClausePlace
 
 
 @record
@@ -63,6 +64,18 @@ class Input:
         spec = next((spec for spec in specs if spec.name == fspa.name), None)
         options = self.session.options if self.session else CompileOptions()
         return clauses_of(fspa, spec, options.state_budget)
+
+    def clause_places(self) -> tuple[ClausePlace, ...]:
+        """Return the places of the clauses in the source; none if the input is an artefact.
+
+        Errors: as for :meth:`only_automaton`.
+        """
+        from tltlc.tools.judge.failing_step import ClausePlace
+
+        name = self.only_automaton().name
+        specs = self.program.specs if self.program else ()
+        parts = next((spec.parts for spec in specs if spec.name == name), ())
+        return tuple(ClausePlace(part.source.name, part.source.position(part.span.start)[0]) for part in parts)
 
 
 def compile_input(source: SourceFile, *, is_artefact: bool, project: Project, options: CompileOptions) -> Input:

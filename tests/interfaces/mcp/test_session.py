@@ -93,6 +93,20 @@ def test_a_wrong_spec_is_found_explained_and_mended(tmp_path: Path) -> None:
             (row,) = judged["rows"]
             assert (row["step"], row["verdict"], row["atoms"]["seen"] > 0) == (3, "violated", True)
             assert "breaks `avoid seen` at step 3" in text(result)
+            # It is the failure of `tltlc monitor --json`, with the atom, the line, and what remained.
+            assert judged["failure"] == {
+                "failed_step": 3,
+                "failed_clause": "avoid seen",
+                "failed_atom": "seen",
+                "clause": 2,
+                "file": "leave.tltl",
+                "line": 9,
+                "atoms": {"seen": 1.0},
+                "unmet": "Reach distance < 2, and avoid seen throughout.",
+            }
+            details = ["leave.tltl:9: avoid seen", "at step 3: seen is true"]
+            assert all(line in text(result).splitlines() for line in details)
+            assert "what remained before: Reach distance < 2, and avoid seen throughout" in text(result)
 
             # What a change of the spec means.
             looser = right.replace("    avoid seen\n", "")
@@ -147,6 +161,10 @@ def test_traces_in_files_are_judged_together(tmp_path: Path) -> None:
             kinds = {Path(trace["trace"]).stem: trace["cause"] and trace["cause"]["kind"] for trace in judged["traces"]}
             assert kinds == {"good": None, "seen": "broken", "short": "unfinished"}
             assert sum(cause["count"] for cause in judged["causes"]) == 2
+            assert judged["failure"] is None
+            for name, step in (("seen", 2), ("short", None), ("good", None)):
+                judged = await agent.document("monitor", path="leave.tltl", traces=[f"runs/{name}.csv"])
+                assert (judged["failure"] and judged["failure"]["failed_step"]) == step
 
     anyio.run(session)
 

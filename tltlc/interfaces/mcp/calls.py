@@ -89,6 +89,8 @@ def _problem(error: ValidationError) -> str:
         return f"{name} must be {' or '.join(_KINDS[kind] for kind in kinds)}"
     if error.validator == "enum":
         return f"{name} must be one of {', '.join(f'`{value}`' for value in error.validator_value)}"
+    if error.validator == "pattern":
+        return f"{name} has a character that the name of a file cannot have"
     if error.validator == "minItems":
         return f"{name} must not be empty"
     if error.validator in ("minimum", "exclusiveMinimum", "maximum"):

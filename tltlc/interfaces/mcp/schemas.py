@@ -70,17 +70,24 @@ DIAGNOSTIC: Final[Schema] = {
     },
 }
 
+_FILE_NAME: Final[Schema] = {"type": "string", "pattern": r"^[^\u0000\ud800-\udfff]*$"}
+"""A text that can be part of the name of a file: without null characters, and without halves of characters."""
+
+PATHS: Final[Schema] = {"type": "array", "items": _FILE_NAME}
+
+
+def path_schema(description: str) -> Schema:
+    """Return the schema of the name of a file, a folder or a Git revision."""
+    return {**_FILE_NAME, "description": description}
+
+
 SETTINGS: Final[Schema] = {
     "params": {
         "type": "object",
         "additionalProperties": {"type": ["string", "number", "boolean"]},
         "description": 'new values of params, for example {"level_size": "30 m"}',
     },
-    "libraries": {
-        "type": "array",
-        "items": {"type": "string"},
-        "description": "folders to search for imports, besides those of tltl.toml",
-    },
+    "libraries": {**PATHS, "description": "folders to search for imports, besides those of tltl.toml"},
     "state_budget": {
         "type": "integer",
         "minimum": 1,
@@ -94,7 +101,7 @@ TEXT: Final[Schema] = {
 }
 
 SOURCE: Final[Schema] = {
-    "path": {"type": "string", "description": "a .tltl file, FILE:SPEC, or an artefact (.fspa.json)"},
+    "path": path_schema("a .tltl file, FILE:SPEC, or an artefact (.fspa.json)"),
     "text": TEXT,
 }
 

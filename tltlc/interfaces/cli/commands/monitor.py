@@ -23,12 +23,11 @@ from tltlc.io.spec_file import ARTEFACT_ENDING, STDIN, STDIN_NAME, input_error, 
 
 if TYPE_CHECKING:
     from tltlc.automaton.fspa import Fspa
-    from tltlc.interfaces.cli.inputs import Input
     from tltlc.monitor.monitor import Monitor
     from tltlc.monitor.run import RunStep, TraceOutcome
     from tltlc.monitor.trace_rows import Stream
     from tltlc.resolve.spec import Signal
-    from tltlc.tools.judge.failing_step import ClausePlace, FailingStep
+    from tltlc.tools.judge.failing_step import FailingStep
 
 
 Output = Literal["json", "csv", "table"]
@@ -143,7 +142,7 @@ def _judge_steps(
                 clock_varies=fspa.clock_varies,
                 sparse=sparse,
             )
-            failing = FailingStep(monitor, _clause_places(spec_input))
+            failing = FailingStep(monitor, spec_input.clause_places())
             rows = run(monitor, failing.watched(steps.watched(samples)))
             show = {"json": _show_json, "csv": _show_csv, "table": _show_table}[output]
             try:
@@ -157,16 +156,6 @@ def _judge_steps(
             limit = f"the limit of {fspa.limit_steps} steps"
             report.say(f"the trace is longer than {limit} and judged whole: `--episodes` ends it there")
     return report.status or (exits.CLEAN if result and result.accepted else exits.FINDINGS)
-
-
-def _clause_places(spec_input: Input) -> tuple[ClausePlace, ...]:
-    """Return the places of the clauses in the source; none if the spec is an artefact."""
-    from tltlc.tools.judge.failing_step import ClausePlace
-
-    name = spec_input.only_automaton().name
-    specs = spec_input.program.specs if spec_input.program else ()
-    parts = next((spec.parts for spec in specs if spec.name == name), ())
-    return tuple(ClausePlace(part.source.name, part.source.position(part.span.start)[0]) for part in parts)
 
 
 @contextmanager

@@ -9,7 +9,7 @@ from typing import Any, Final
 from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.interfaces.mcp.answer import Answer, WrongUseError, with_diagnostics
-from tltlc.interfaces.mcp.schemas import SETTINGS, TEXT, TEXTS, arguments, result
+from tltlc.interfaces.mcp.schemas import SETTINGS, TEXT, TEXTS, arguments, path_schema, result
 from tltlc.interfaces.mcp.spec_argument import SpecArgument, read_spec
 from tltlc.interfaces.mcp.tool import Tool
 from tltlc.io.files import files_below, is_dir
@@ -80,7 +80,7 @@ TOOL: Final = Tool(
     ),
     arguments=arguments(
         {
-            "path": {"type": "string", "description": "a .tltl file, an artefact (.fspa.json), or a folder"},
+            "path": path_schema("a .tltl file, an artefact (.fspa.json), or a folder"),
             "text": TEXT,
             "lint": {
                 "type": "boolean",

@@ -9,7 +9,7 @@ from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.interfaces.compiled_input import Input
 from tltlc.interfaces.mcp.answer import Answer, WrongUseError, guarded, with_diagnostics
-from tltlc.interfaces.mcp.schemas import SETTINGS, SOURCE, SPEC, Schema, arguments, result, schema_file
+from tltlc.interfaces.mcp.schemas import SETTINGS, SOURCE, SPEC, Schema, arguments, path_schema, result, schema_file
 from tltlc.interfaces.mcp.spec_argument import read_spec, search_work
 from tltlc.interfaces.mcp.tool import Tool
 from tltlc.io.spec_file import split
@@ -83,7 +83,7 @@ def _side_name(side: Input, spec: str | None) -> str:
 
 
 def _side_schema(which: str) -> Schema:
-    revision = {"type": "string", "description": "a Git revision, such as HEAD; then `path` names a file of it"}
+    revision = path_schema("a Git revision, such as HEAD; then `path` names a file of it")
     return {
         "type": "object",
         "properties": {**SOURCE, **SPEC, "revision": revision},

@@ -13,7 +13,7 @@ from tltlc.automaton.fspa import Fspa
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.interfaces.compiled_input import Input
 from tltlc.interfaces.mcp.answer import Answer, WrongUseError, diagnostic_text, guarded, with_diagnostics
-from tltlc.interfaces.mcp.schemas import ONE_SPEC, SETTINGS, SOURCE, TEXTS, arguments, result
+from tltlc.interfaces.mcp.schemas import ONE_SPEC, PATHS, SETTINGS, SOURCE, TEXTS, arguments, result
 from tltlc.interfaces.mcp.spec_argument import read_spec
 from tltlc.interfaces.mcp.tool import Tool
 from tltlc.io.files import read_bytes
@@ -23,7 +23,8 @@ from tltlc.monitor.packed import unpacked
 from tltlc.monitor.parquet import as_text
 from tltlc.monitor.run import RunStep
 from tltlc.monitor.run import run as monitor_steps
-from tltlc.monitor.traces import read_trace
+from tltlc.monitor.traces import TraceSample, read_trace
+from tltlc.tools.judge.failing_step import FailingStep
 from tltlc.tools.judge.json_values import step_values, summary_values, trace_values
 from tltlc.tools.judge.judge import Judge
 from tltlc.tools.judge.pool import judge_files
@@ -45,7 +46,7 @@ def run(arguments: Mapping[str, Any]) -> Answer:
         raise WrongUseError(
             "give the trace in one of these: `traces` (paths), `trace_text` (CSV or JSON lines), `rows`"
         )
-    empty = {"spec": None, "traces": [], **summary_values((), 0, ()), "rows": []}
+    empty = {"spec": None, "traces": [], "failure": None, **summary_values((), 0, ()), "rows": []}
     return guarded(empty, lambda: _judge(arguments))
 
 
@@ -61,14 +62,17 @@ def _judge(arguments: Mapping[str, Any]) -> Answer:
     data = None if "traces" in arguments else _trace_data(arguments)
     traces = _judged(compiled, names, data, episodes=arguments.get("episodes", False))
     rows = _rows(arguments, fspa, names, data)
+    failing = _failing_step(compiled, traces[0], data) if len(traces) == 1 else None
     document = {
         "spec": fspa.name,
         "traces": list(map(trace_values, traces)),
+        "failure": None if failing is None else failing.values(),
         **summary_values(traces, len(traces), others),
         "rows": [step_values(fspa, row) for row in rows],
     }
     lines = [f"{trace.name}: {trace_text(trace)}" for trace in traces]
     lines += [summary_text(traces)] if len(traces) > 1 else []
+    lines += [] if failing is None else failing.details()
     lines += [_row_text(fspa, row) for row in rows]
     reported = [(trace, diagnostic) for trace in traces for diagnostic in trace.diagnostics]
     missing = [diagnostic for trace, diagnostic in reported if trace.verdict is None and not diagnostic.labels]
@@ -104,24 +108,48 @@ def _rows(arguments: Mapping[str, Any], fspa: Fspa, names: Sequence[str], data: 
         if len(names) != 1:
             raise WrongUseError(f"`from_step` and `to_step` are for one trace, and `traces` names {len(names)}")
         (name,) = names
-        data = unpacked(read_bytes(name, name, JUDGED_TRACE.size), name)
+        data = _trace_file(name)
     rows: list[RunStep] = []
     # The verdict has the error of a trace that cannot be read.
     with suppress(TltlError):
-        rows.extend(islice(_steps(fspa, name, data), first - 1, last))
+        rows.extend(islice(monitor_steps(Monitor(fspa), _samples(fspa, name, data)), first - 1, last))
     return rows
 
 
-def _steps(fspa: Fspa, name: str, data: bytes) -> Iterator[RunStep]:
+def _failing_step(compiled: Input, trace: JudgedTrace, data: bytes | None) -> FailingStep | None:
+    """Return the step that broke the spec, with what was measured there; None if no step of the trace did.
+
+    ``data`` is the trace, or None if it is a file.
+    """
+    cause = trace.so_far if trace.verdict is None else trace.verdict.cause
+    if cause is None or cause.kind not in ("broken", "blocked"):
+        return None
+    fspa = compiled.only_automaton()
+    monitor = Monitor(fspa)
+    failing = FailingStep(monitor, compiled.clause_places())
+    # The file may have changed since it was judged.
+    with suppress(TltlError):
+        samples = _samples(fspa, trace.name, _trace_file(trace.name) if data is None else data)
+        for _ in failing.noted(monitor_steps(monitor, islice(failing.watched(samples), cause.step))):
+            pass
+    return failing
+
+
+def _trace_file(name: str) -> bytes:
+    return unpacked(read_bytes(name, name, JUDGED_TRACE.size), name)
+
+
+def _samples(fspa: Fspa, name: str, data: bytes) -> Iterator[TraceSample]:
     stream = io.BytesIO(as_text(data, name, fspa.signals))
-    samples = read_trace(stream, name, fspa.signals, fspa.clock_s, clock_varies=fspa.clock_varies)
-    return monitor_steps(Monitor(fspa), samples)
+    return read_trace(stream, name, fspa.signals, fspa.clock_s, clock_varies=fspa.clock_varies)
 
 
 def _row_text(fspa: Fspa, row: RunStep) -> str:
     atoms = ", ".join(f"{atom.name} {value:.3g}" for atom, value in zip(fspa.atoms, row.values, strict=True))
     return f"step {row.number}: {row.step.verdict}, progress {row.step.progress:.3g}; {atoms}"
 
+
+_STEP: Final = {"type": "integer", "minimum": 1, "maximum": 10**12}
 
 _CAUSE: Final = {
     "type": ["object", "null"],
@@ -137,6 +165,26 @@ _CAUSE: Final = {
         "atoms": {**TEXTS, "description": "the atoms whose values at `step` broke the spec"},
     },
     "description": "why the trace is not accepted",
+}
+
+_FAILURE: Final = {
+    "type": ["object", "null"],
+    "required": ["failed_step", "failed_clause", "failed_atom", "clause", "file", "line", "atoms", "unmet"],
+    "properties": {
+        "failed_step": {"type": "integer", "minimum": 1},
+        "failed_clause": {"type": ["string", "null"], "description": "the clause to blame, if it is a single one"},
+        "failed_atom": {"type": ["string", "null"]},
+        "clause": {"type": ["integer", "null"], "description": "the number of the clause, from 1"},
+        "file": {"type": ["string", "null"]},
+        "line": {"type": ["integer", "null"], "description": "where the clause begins"},
+        "atoms": {
+            "type": "object",
+            "additionalProperties": {"type": "number"},
+            "description": "the values of the atoms that decided; an atom holds if its value is above 0",
+        },
+        "unmet": {"type": "string", "description": "what remained to be satisfied before this step, in words"},
+    },
+    "description": "of a single trace: the step that broke the spec; null if no step did",
 }
 
 _TRACE: Final = {
@@ -172,7 +220,7 @@ TOOL: Final = Tool(
         {
             **SOURCE,
             **ONE_SPEC,
-            "traces": {**TEXTS, "minItems": 1, "description": "paths of traces, or of folders with traces"},
+            "traces": {**PATHS, "minItems": 1, "description": "paths of traces, or of folders with traces"},
             "trace_text": {"type": "string", "description": "a trace as CSV with a header, or as JSON lines"},
             "rows": {
                 "type": "array",
@@ -183,8 +231,8 @@ TOOL: Final = Tool(
                 "type": "boolean",
                 "description": "judge each trace as an episode, which ends at the goal, at a violation or at the limit",
             },
-            "from_step": {"type": "integer", "minimum": 1, "description": "the first step to show, from 1"},
-            "to_step": {"type": "integer", "minimum": 1, "description": "the last step to show"},
+            "from_step": {**_STEP, "description": "the first step to show, from 1"},
+            "to_step": {**_STEP, "description": "the last step to show"},
             **SETTINGS,
         }
     ),
@@ -192,6 +240,7 @@ TOOL: Final = Tool(
         {
             "spec": {"type": ["string", "null"]},
             "traces": {"type": "array", "items": _TRACE},
+            "failure": _FAILURE,
             "complete": {"type": "boolean"},
             "total": {"type": "integer"},
             "accepted": {"type": "integer", "description": "how many traces are accepted"},

@@ -23,7 +23,7 @@ from anyio.streams.text import TextReceiveStream
 
 from tltlc.diagnostics.shortening import short_text
 from tltlc.interfaces.mcp.answer import Answer, WrongUseError
-from tltlc.interfaces.mcp.schemas import TEXTS, arguments
+from tltlc.interfaces.mcp.schemas import PATHS, TEXTS, arguments, path_schema
 from tltlc.interfaces.mcp.tool import Tool
 
 Report = Callable[[float, str], Awaitable[None]]
@@ -144,17 +144,16 @@ TOOL: Final = Tool(
     ),
     arguments=arguments(
         {
-            "suite": {"type": "string", "description": "a suite, a TOML file"},
-            "spec": {"type": "string", "description": "judge recorded sessions by this spec (FILE or FILE:SPEC)"},
-            "baseline": {
-                "type": "string",
-                "description": "with `spec`: the sessions to compare with (a trace or a folder); with `suite`: a file",
-            },
-            "now": {"type": "string", "description": "with `spec`: the sessions to judge, a trace or a folder"},
+            "suite": path_schema("a suite, a TOML file"),
+            "spec": path_schema("judge recorded sessions by this spec (FILE or FILE:SPEC)"),
+            "baseline": path_schema(
+                "with `spec`: the sessions to compare with (a trace or a folder); with `suite`: a file"
+            ),
+            "now": path_schema("with `spec`: the sessions to judge, a trace or a folder"),
             "judged_as": {"enum": ["episodes", "traces"], "description": "with `spec` (default: episodes)"},
             "pass_rate": {"type": "number", "minimum": 0, "maximum": 0.999, "description": "with `spec`"},
             "fail_rate": {"type": "number", "minimum": 0, "maximum": 0.999, "description": "with `spec`"},
-            "changed": {**TEXTS, "minItems": 1, "description": "judge only the cases that depend on these files"},
+            "changed": {**PATHS, "minItems": 1, "description": "judge only the cases that depend on these files"},
             "fresh": {"type": "boolean", "description": "play all cases again, even if nothing has changed"},
             "retrain": {
                 "type": "boolean",
@@ -162,7 +161,7 @@ TOOL: Final = Tool(
             },
             "minutes": {"type": "number", "exclusiveMinimum": 0, "description": "with `retrain`: the limit of each"},
             "workers": {"type": "integer", "minimum": 1, "description": "how many processes play"},
-            "output": {"type": "string", "description": "the folder for the page and the recordings"},
+            "output": path_schema("the folder for the page and the recordings"),
         }
     ),
     result={
