@@ -205,7 +205,9 @@ def new_failures(
     new = [episode for episode in now if not episode.summary.success and end_of(level, fspa, episode).mode not in known]
     results = []
     for group in failures(level, fspa, new):
-        short = phrase(group.text, f" in {count_text(len(group.episodes), len(now), _noun(level))}")
+        # The text is that of `findings`, so that a page can tell it once.
+        counted = count_text(len(group.episodes), len(now), _noun(level), is_compared=len(now) != len(before))
+        short = phrase(group.text, f" in {counted}")
         sentence = phrase(short, f"; before: in 0 of {len(before)}")
         indices = tuple(sorted(episode.summary.index for episode in group.episodes))
         results.append(Finding(sentence.text, indices, mentions=sentence.mentions, short=short.text))
