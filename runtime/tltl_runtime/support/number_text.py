@@ -58,8 +58,12 @@ def quantity_text(value: float, unit: str, gap: float = inf) -> str:
 
 def interval_text(interval: tuple[float, float]) -> str:
     """Return an interval in [0, 1] in percent, rounded outwards to whole numbers: ``85% to 93%``."""
-    low, high = floor(100.0 * interval[0] + 1e-9), ceil(100.0 * interval[1] - 1e-9)
-    return f"{low}% to {high}%"
+    return " to ".join(interval_texts(interval))
+
+
+def interval_texts(interval: tuple[float, float]) -> tuple[str, str]:
+    """Return the ends of an interval in [0, 1] in percent, rounded outwards to whole numbers."""
+    return f"{floor(100.0 * interval[0] + 1e-9)}%", f"{ceil(100.0 * interval[1] - 1e-9)}%"
 
 
 def significant(value: float, most: int = 6) -> str:

@@ -75,6 +75,19 @@ def test_alternatives_of_several_atoms_share_the_verb() -> None:
     assert subgoal(fspa, 0).text == "makes `d`, or both `b` and `c`, true"
 
 
+@pytest.mark.parametrize(
+    ("body", "text"),
+    [
+        ("reach (a and b) or (b and c) or (c and d)", "meets the spec"),
+        ("reach a or b or c or d", "makes `a`, `b`, `c` or `d` true"),
+        ("reach (a and b) or (b and c) or (c and d) then a", "comes to the last step of the spec"),
+    ],
+)
+def test_many_alternatives_of_several_atoms_are_not_listed(body: str, text: str) -> None:
+    fspa = spec(body, "".join(f"signal {name}: bool\n" for name in "abcd"))
+    assert subgoal(fspa, 0).text == text
+
+
 def test_atoms_that_hold_together_are_listed() -> None:
     fspa = spec("reach a reach b reach c", "".join(f"signal {name}: bool\n" for name in "abc"))
     assert subgoal(fspa, 0).text == "makes `a`, `b` and `c` true"

@@ -86,10 +86,10 @@ def test_a_broken_build_fails_and_the_clause_is_named(tltlc: Run, here: Path) ->
     assert first.startswith("fetch  fail     30 of 100")
     assert last == "1 case: 1 fail"
     assert "    met in 30 of 100 traces (30%), before in 95 of 100 (95%): certainly in less than 50%" in reasons
-    (burnt,) = (reason for reason in reasons if "breaks" in reason)
+    (burnt,) = (reason for reason in reasons if reason.startswith("    breaks"))
     assert burnt == reasons[0]
     assert burnt.strip().startswith(
-        "breaks `avoid on_lava` at step 2 in 65 of 100 traces (65%); before: in 0 of 100 traces; "
+        "breaks `avoid on_lava` at step 2 (0.1 s) in 65 of 100 traces (65%); before: in 0 of 100 traces; "
     )
     (short,) = (reason for reason in reasons if "ends before" in reason)
     assert short.strip().startswith(
@@ -104,6 +104,31 @@ def test_the_sentence_counts_the_traces_that_break_the_spec(tltlc: Run, here: Pa
     sentence, first, *_ = result.out.splitlines()
     assert sentence == "20 of 30 traces break the spec; before: none"
     assert first.startswith("fetch  review   10 of 30")
+    assert "    `burnt/010.csv`: breaks `avoid on_lava` at step 2 of 4 (0.1 s)\n" in result.out
+    assert result.out.count("`: breaks") == 5 and "\n    and 15 more\n" in result.out
+
+
+@pytest.mark.parametrize("passes", [False, True])
+def test_traces_that_break_different_rules_are_named_with_rule_and_step(
+    passes: bool,
+    tltlc: Run,  # noqa: F811
+    here: Path,
+) -> None:
+    count = 198 if passes else 28
+    write_traces(here / "clean", (count + 2, WON))
+    write_traces(here / "mixed", (count, WON), (1, BURNT), (1, SHORT))
+    files = ("--junit", "report.xml", "--github")
+    result = regress(tltlc, "--baseline", "clean", "--now", "mixed", *files)
+    assert cases(result).startswith("fetch  pass " if passes else "fetch  review ")
+    lines = [
+        f"`mixed/{count:03}.csv`: breaks `avoid on_lava` at step 2 of 4 (0.1 s)",
+        f"`mixed/{count + 1:03}.csv`: `reach has_key then at_exit` is not met after 2 steps",
+    ]
+    printed, _, annotation = result.out.partition("\n::")
+    assert [line.strip() for line in printed.splitlines() if line.startswith("    `")] == lines
+    assert "%0A".join(lines) in annotation
+    texts = [element.text or "" for element in ET.parse(here / "report.xml").getroot().iter()]
+    assert any("\n".join(lines) in text for text in texts)
 
 
 def test_fewer_than_25_traces_need_a_review(tltlc: Run, here: Path) -> None:  # noqa: F811
@@ -231,9 +256,9 @@ def test_earlier_failures_at_another_stage_are_not_denied(tltlc: Run, here: Path
     write_traces(here / "early", (70, WON), (30, ["000", "100"]))
     write_traces(here / "late", (70, WON), (30, ["000", "010", "110"]))
     result = regress(tltlc, "--baseline", "early", "--now", "late")
-    (burnt,) = (line.strip() for line in result.out.splitlines() if "breaks" in line)
+    (burnt,) = (line.strip() for line in result.out.splitlines() if line.startswith("    breaks"))
     assert burnt.startswith(
-        "breaks `avoid on_lava` at step 3 before it makes `at_exit` true in 30 of 100 traces (30%); "
+        "breaks `avoid on_lava` at step 3 (0.2 s) before it makes `at_exit` true in 30 of 100 traces (30%); "
     )
 
 
@@ -275,7 +300,9 @@ def test_the_reports_have_the_same_verdict(tltlc: Run, here: Path) -> None:  # n
     result = regress(tltlc, "--baseline", "old", "--now", "new", *files)
     sentence, annotation = (line for line in result.out.splitlines() if line.startswith("::"))
     assert sentence == "::notice title=fetch::70 of 100 traces do not meet the spec; before: 5 of 100"
-    assert annotation.startswith("::error file=fetch.tltl,title=fetch%3A fail::breaks `avoid on_lava` at step 2")
+    assert annotation.startswith(
+        "::error file=fetch.tltl,title=fetch%3A fail::breaks `avoid on_lava` at step 2 (0.1 s)"
+    )
     assert "met in 30 of 100 traces" in annotation
     document = json.loads((here / "report.json").read_text(encoding="utf-8"))
     (case,) = document["cases"]
@@ -283,7 +310,9 @@ def test_the_reports_have_the_same_verdict(tltlc: Run, here: Path) -> None:  # n
     assert case["traces"]["now"]["names"][:2] == ["new/000.csv", "new/001.csv"]
     assert case["accounts"][30]["by"] == ["avoid on_lava"]
     (failure,) = ET.parse(here / "report.xml").getroot().iter("failure")
-    assert str(failure.get("message")).startswith("fail: breaks `avoid on_lava` at step 2 in 65 of 100 traces (65%)")
+    assert str(failure.get("message")).startswith(
+        "fail: breaks `avoid on_lava` at step 2 (0.1 s) in 65 of 100 traces (65%)"
+    )
     page = (here / "report.html").read_text(encoding="utf-8")
     assert "100 recorded traces of new · compared with 100 recorded traces of old · spec fetch" in page
     assert page.count('<figure class="trace"') == 7

@@ -136,19 +136,33 @@ def trace_text(trace: JudgedTrace) -> str:
 
 
 def _verdict_text(verdict: TraceVerdict) -> str:
-    outcome, cause = verdict.outcome, verdict.cause
-    steps = f"{outcome.steps} step{'' if outcome.steps == 1 else 's'}"
-    if outcome.steps < verdict.samples:
-        steps = f"{outcome.steps} of {verdict.samples} steps"
+    cause = verdict.cause
     if cause is None:
-        return f"accepted: {outcome.verdict} after {steps}"
+        return f"accepted: {verdict.outcome.verdict} after {_steps_of(verdict)}"
+    return f"not accepted: {rejection_text(verdict, cause)}"
+
+
+def rejection_text(verdict: TraceVerdict, cause: RejectionCause, step_s: float | None = None) -> str:
+    """Say why a trace is not accepted: ``breaks `avoid on_lava` at step 3 of 50``.
+
+    ``cause`` is that of the ``verdict``. With ``step_s``, the time between two samples in seconds, the text
+    also has the time of the step, from the first sample on.
+    """
     if cause.kind in ("broken", "blocked"):
-        return f"not accepted: {_breaking_text(cause)} of {verdict.samples}{_reason_text(cause)}"
-    clauses = _list_text(cause.clauses)
+        time = "" if step_s is None else f" ({(cause.step - 1) * step_s:.6g} s)"
+        return f"{_breaking_text(cause)} of {verdict.samples}{time}{_reason_text(cause)}"
+    clauses, steps = _list_text(cause.clauses), _steps_of(verdict)
     if cause.kind == "late":
-        return f"not accepted: {clauses or 'the spec'} {_are(cause.clauses)} not met at the limit, after {steps}"
+        return f"{clauses or 'the spec'} {_are(cause.clauses)} not met at the limit, after {steps}"
     left = f"{clauses} {_are(cause.clauses)} not met" if clauses else "it is too short"
-    return f"not accepted: {left} after {steps}"
+    return f"{left} after {steps}"
+
+
+def _steps_of(verdict: TraceVerdict) -> str:
+    steps = verdict.outcome.steps
+    if steps < verdict.samples:
+        return f"{steps} of {verdict.samples} steps"
+    return f"{steps} step{'' if steps == 1 else 's'}"
 
 
 def _reason_text(cause: RejectionCause) -> str:

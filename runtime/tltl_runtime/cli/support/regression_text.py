@@ -47,7 +47,7 @@ def case_lines(report: CaseReport, width: int, *, is_cached: bool) -> Iterator[s
             yield click.style(f"    {plain_text(new_failure_text(finding))}", fg=_COLORS["review"])
         # Where nothing has changed, the line of a case that passes says it all.
         certain = report.causes[:1] if report.edits or report.version_changes else ()
-        texts = (*(report.edits if certain else ()), *certain, *((report.lost,) if report.lost else ()))
+        texts = (*report.failing_traces, *(report.edits if certain else ()), *certain, *filter(None, [report.lost]))
         minor = report.version_changes
     else:
         reasons = report.ordered_reasons

@@ -19,7 +19,7 @@ from tltl_runtime.regression.explain.failures import end_of, failures
 from tltl_runtime.regression.explain.open_goals import open_goals, subgoal_of_all
 from tltl_runtime.regression.explain.path_points import positions_along
 from tltl_runtime.regression.explain.phrase import Phrase, phrase, quoted_names
-from tltl_runtime.regression.explain.stages import Subgoal, subgoals_phrase
+from tltl_runtime.regression.explain.stages import MEETS, Subgoal, subgoals_phrase
 from tltl_runtime.support.number_text import count_text, percent, significant
 from tltlc.api import Fspa, Notation, label_text, record
 
@@ -108,7 +108,8 @@ def _stages(
     finding is about the first stage that clearly more, or clearly fewer, episodes complete now than
     before. It also names the earlier stages that most episodes complete, now as before. If no stage
     has changed in this way, the finding names all stages that most episodes complete. If there are
-    none, there is no finding. ``noun`` is the word for the episodes: ``episodes`` or ``traces``.
+    none, or if the only stage is to meet the spec, there is no finding. ``noun`` is the word for the
+    episodes: ``episodes`` or ``traces``.
     """
     unchanged_stages: list[Subgoal] = []
     for distance, states in _visited_states(fspa, (*now, *before)):
@@ -118,6 +119,9 @@ def _stages(
             if len(passed_now) / len(now) > _COMMON_SHARE:
                 unchanged_stages.append(stage)
             continue
+        if stage == MEETS and not unchanged_stages:
+            # The pass rate says the same.
+            return
         failed = tuple(episode.summary.index for episode in now if episode not in passed_now)
         counts = [
             count_text(len(passed), len(episodes), noun, is_compared=len(now) != len(before))

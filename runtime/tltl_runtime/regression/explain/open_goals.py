@@ -6,7 +6,7 @@ from collections.abc import Collection, Iterator
 from typing import Any
 
 from tltl_runtime.regression.explain.phrase import quoted_names
-from tltl_runtime.regression.explain.stages import MEETS, Subgoal, literal_name, subgoal, target_of
+from tltl_runtime.regression.explain.stages import MEETS, Subgoal, last_steps, literal_name, subgoal, target_of
 from tltlc.api import Fspa, record
 
 
@@ -52,8 +52,7 @@ def subgoal_of_all(fspa: Fspa, states: Collection[int], distance: int) -> Subgoa
         least = min(count for count in counts_nearer if count is not None)
         if least == (counts.pop() or 0) + 1:
             return Subgoal(other=f"reaches {least} of the {len(names.open)} goals {quoted_names(names.open)}")
-    left = distance - 1
-    return Subgoal(other=f"comes to the last {'step' if left == 1 else f'{left} steps'} of the spec")
+    return last_steps(distance)
 
 
 def _reached_counts(fspa: Fspa, states: Collection[int]) -> set[int | None]:

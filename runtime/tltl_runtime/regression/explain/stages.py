@@ -15,6 +15,9 @@ _REACHES: Final = "reaches "
 _Kind = Literal["reach", "true", "false"]
 """What to do with names: reach these entities, or make these atoms true or false."""
 
+_MOST_ALTERNATIVES: Final = 2
+"""Alternatives that name several things at once are listed only up to this number of them."""
+
 _FAR: Final = 1e4
 """A distance, in metres, that is greater than any distance in a level."""
 
@@ -64,6 +67,17 @@ def _alternatives(groups: Sequence[Sequence[str]]) -> str:
 
 
 MEETS: Final = Subgoal(other="meets the spec")
+
+
+def last_steps(distance: int) -> Subgoal:
+    """Return the subgoal to come from a state at ``distance`` from acceptance to the next distance.
+
+    For example, ``comes to the last 2 steps of the spec``; at distance 1, ``meets the spec``.
+    """
+    if distance == 1:
+        return MEETS
+    left = distance - 1
+    return Subgoal(other=f"comes to the last {'step' if left == 1 else f'{left} steps'} of the spec")
 
 
 def target_of(fspa: Fspa, atom: int) -> str | None:
@@ -124,12 +138,15 @@ def subgoal(fspa: Fspa, state: int) -> Subgoal:
     """Return the subgoal of a state: what the player must do to leave it towards acceptance.
 
     If several things do so, they are alternatives. If nothing is left to do, or if no edge leads
-    towards acceptance, the text of the subgoal is ``meets the spec``.
+    towards acceptance, the text of the subgoal is ``meets the spec``. If there are so many alternatives
+    that nobody reads them, the subgoal counts the steps of the spec that are left.
     """
     ways = [_way(fspa, prime) for edge in monitors.tables(fspa).improving[state] for prime in edge.guard.primes]
     distinct = list(dict.fromkeys(way for way in ways if way is not None))
     if not distinct:
         return MEETS
+    if len(distinct) > _MOST_ALTERNATIVES and any(len(names) > 1 for _, names in distinct):
+        return last_steps(fspa.states[state].distance or 1)
     groups = {kind: tuple(names for way_kind, names in distinct if way_kind == kind) for kind, _ in distinct}
     is_choice = len(distinct) > 1
     if groups.keys() == {"reach"}:

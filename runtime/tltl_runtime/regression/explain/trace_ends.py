@@ -24,7 +24,7 @@ def trace_end_text(fspa: Fspa, cause: EndKind, clauses: Sequence[str], traces: S
     if cause == "stopped":
         return f"ends {unmet}"
     steps = [step for trace in traces if (step := _violation_step(fspa, trace)) is not None]
-    usual = _usual_step_text(steps)
+    usual = _usual_step_text(fspa, steps)
     return f"makes {names} impossible{usual}" if cause == "blocked" else f"breaks {names or 'the spec'}{usual}"
 
 
@@ -34,12 +34,27 @@ def _violation_step(fspa: Fspa, trace: ExplainedEpisode) -> int | None:
     return next(violated, None)
 
 
-def _usual_step_text(steps: Sequence[int]) -> str:
+def step_text(fspa: Fspa, step: int) -> str:
+    """Return the number of a sample with its time from the first sample on: ``step 12 (1.1 s)``.
+
+    Without a fixed clock, the time is left out.
+    """
+    return f"step {step}{_time_text(fspa, step)}"
+
+
+def _time_text(fspa: Fspa, *steps: int) -> str:
+    if fspa.clock_s is None or fspa.clock_varies:
+        return ""
+    return f" ({' to '.join(f'{(step - 1) * fspa.clock_s:.6g} s' for step in steps)})"
+
+
+def _usual_step_text(fspa: Fspa, steps: Sequence[int]) -> str:
     if not steps:
         return ""
     step, count = Counter(steps).most_common(1)[0]
     if count == len(steps):
-        return f" at step {step}"
+        return f" at {step_text(fspa, step)}"
     if 2 * count > len(steps):
-        return f", mostly at step {step},"
-    return f", at steps {min(steps)} to {max(steps)},"
+        return f", mostly at {step_text(fspa, step)},"
+    least, most = min(steps), max(steps)
+    return f", at steps {least} to {most}{_time_text(fspa, least, most)},"

@@ -149,6 +149,8 @@ class CaseReport:
     figure_changes: tuple[str, ...] = ()
     version_changes: tuple[str, ...] = ()
     new_failures: tuple[Finding, ...] = ()
+    failing_traces: tuple[str, ...] = ()
+    """For recorded traces: which of them fail, with the clause and the step; at most a few, and how many more."""
     is_impossible: bool = False
     is_outdated: bool = False
     """Whether the spec has changed since the policy was trained, and the policy's old spec judges the case."""
@@ -174,6 +176,7 @@ class CaseReport:
                 self.explanation,
                 self.figure_changes,
                 self.version_changes,
+                self.failing_traces,
                 is_worse=_is_worse(self.verdict, self.figures, self.baseline),
             )
         )

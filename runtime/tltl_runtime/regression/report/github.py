@@ -53,7 +53,8 @@ def _command(suite: Suite, case: SuiteCase, report: CaseReport, root: Path) -> s
     location = {"file": _path_from_root(Path(path), root), **({"line": str(line)} if line else {})}
     is_new = report.verdict == "pass"
     title = f"{report.name}: {report.verdict}{', with a new failure' * is_new}"
-    texts = map(new_failure_text, report.new_failures) if is_new else report.reasons
+    new = (*map(new_failure_text, report.new_failures), *report.failing_traces)
+    texts = new if is_new else report.reasons
     return workflow_command(_COMMANDS[report.verdict], "\n".join(texts), {**location, "title": title})
 
 

@@ -8,13 +8,14 @@ from typing import Final, Literal
 from tltl_runtime.regression.explain.explain import Finding, FindingKind
 from tltlc.api import record
 
-ReasonKind = Literal["main", "edit", "cause", "finding", "figure", "version"]
+ReasonKind = Literal["main", "edit", "cause", "finding", "trace", "figure", "version"]
 """What a reason is about.
 
 - ``main``: what makes a verdict on play impossible, or what no player can reach;
 - ``edit``: what has changed since the baseline;
 - ``cause``: the pass rate, and sentences that belong to no other kind;
 - ``finding``: what the policy does, mostly differently from the baseline;
+- ``trace``: which recorded traces fail, and at which step;
 - ``figure``: the means of progress and reward;
 - ``version``: versions of software that are not those of the baseline.
 """
@@ -52,20 +53,22 @@ def ordered_reasons(
     findings: Sequence[Finding],
     figures: Sequence[str],
     versions: Sequence[str],
+    traces: Sequence[str] = (),
     *,
     is_worse: bool,
 ) -> Iterator[Reason]:
     """Yield the reasons of a verdict in order; :data:`ReasonKind` has their kinds.
 
-    First comes what happens, then what has changed, then more on what happens. The pass rate comes
-    next, then details, progress, and reward. Versions are last. ``is_worse`` says whether the case
-    fails more often than before.
+    First comes what happens, then what has changed, then more on what happens, with the ``traces`` that
+    fail. The pass rate comes next, then details, progress, and reward. Versions are last. ``is_worse``
+    says whether the case fails more often than before.
     """
     telling = telling_findings(findings, is_worse=is_worse)
     happens = [*(_plain("main", text) for text in main), *map(_found, telling)]
     yield from happens[:1]
     yield from (_plain("edit", text) for text in edits)
     yield from happens[1:]
+    yield from (_plain("trace", text) for text in traces)
     yield from (_plain("cause", text) for text in causes)
     yield from (_found(finding) for finding in findings if finding not in telling)
     yield from (_plain("figure", text) for text in figures)

@@ -18,7 +18,7 @@ from tltl_runtime.regression.verdict.baseline import Identity
 from tltl_runtime.regression.verdict.level_texts import Texts
 from tltl_runtime.regression.verdict.verdict import Judgement, differing_figures
 from tltl_runtime.spec.episode_summary import EpisodeSummary
-from tltl_runtime.support.number_text import count_text, interval_text, mean_text, percent_exactly
+from tltl_runtime.support.number_text import count_text, interval_texts, mean_text, percent_exactly
 from tltlc.api import Fspa
 
 
@@ -50,7 +50,11 @@ def reasons(
     elif judgement.certain and judgement.rate_interval[1] < thresholds.pass_rate:
         yield f"{met}: certainly in {fail_rate} to {pass_rate}"
     else:
-        yield f"{met}: certainly in {interval_text(judgement.rate_interval)}, but {pass_rate} or more is required"
+        low, high = interval_texts(judgement.rate_interval)
+        possible = f"with so few {noun}, the true rate may be as low as {low}"
+        if passed < thresholds.pass_rate * len(now):
+            possible = f"the true rate may be {low} to {high}"
+        yield f"{met}: {possible}, and {pass_rate} or more is required"
     for change in judgement.changes:
         yield _change_text(change.figure, change.now, change.before)
     if judgement.verdict == "review" and not judgement.certain:

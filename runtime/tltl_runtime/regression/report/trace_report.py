@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from typing import Final
 
 from tltl_runtime.evaluation.figures import figures_of
-from tltl_runtime.regression.explain.explain import findings, new_failures
+from tltl_runtime.regression.explain.explain import Finding, findings, new_failures
 from tltl_runtime.regression.explain.explained_episode import summaries_of
 from tltl_runtime.regression.report.case_report import (
     CaseReport,
@@ -20,7 +21,10 @@ from tltl_runtime.regression.report.reasons import reasons
 from tltl_runtime.regression.suite.suite import LEAST_EPISODES
 from tltl_runtime.regression.suite.trace_case import TraceCase
 from tltl_runtime.regression.verdict.judged_traces import NO_TRACES, JudgedTraces, TraceSet
-from tltlc.api import Diagnostic, TltlError, fileio
+from tltlc.api import Diagnostic, TltlError, fileio, traces
+
+_MOST_TRACES: Final = 5
+"""At most this many traces that fail are named."""
 
 
 def report_on_traces(judged: JudgedTraces) -> CaseReport:
@@ -64,6 +68,7 @@ def report_on_traces(judged: JudgedTraces) -> CaseReport:
         ),
         explanation=explanation,
         new_failures=new,
+        failing_traces=_failing_traces(judged, new),
         episodes=now,
         traces=names,
     )
@@ -93,32 +98,58 @@ def _case_traces(case: TraceCase, spec: str, now: TraceSet = NO_TRACES, before: 
     )
 
 
+def _failing_traces(judged: JudgedTraces, new: Sequence[Finding]) -> tuple[str, ...]:
+    """Return a sentence for each of the first traces that fail, and one with the number of the others.
+
+    The first traces are one for each cause. If the case passes, only traces count that fail in a way that is
+    ``new``.
+    """
+    assert judged.judgement is not None
+    told = {index for finding in new for index in finding.episodes}
+    causes = [
+        (index, cause)
+        for index, verdict in enumerate(judged.now.verdicts)
+        if (cause := verdict.cause) is not None and (judged.judgement.verdict != "pass" or index in told)
+    ]
+    first = {(cause.kind, cause.clauses): index for index, cause in reversed(causes)}
+    causes.sort(key=lambda pair: pair[0] not in first.values())
+    step_s = None if judged.fspa.clock_varies else judged.fspa.clock_s
+    texts = [
+        f"`{judged.now.names[index]}`: {traces.rejection_text(judged.now.verdicts[index], cause, step_s)}"
+        for index, cause in causes[:_MOST_TRACES]
+    ]
+    left = len(causes) - len(texts)
+    return (*texts, *([f"and {left} more"] if left else []))
+
+
 def _too_few_texts(judged: JudgedTraces) -> Iterator[str]:
-    for traces, where in ((judged.now, ""), (judged.before, " in the baseline")):
-        if (count := len(traces.episodes)) < LEAST_EPISODES:
+    for trace_set, where in ((judged.now, ""), (judged.before, " in the baseline")):
+        if (count := len(trace_set.episodes)) < LEAST_EPISODES:
             yield f"only {count} trace{'s' * (count != 1)}{where}: a verdict needs {LEAST_EPISODES}"
 
 
-def _unread_texts(traces: TraceSet, of: str) -> Iterator[str]:
+def _unread_texts(trace_set: TraceSet, of: str) -> Iterator[str]:
     """Yield a sentence with the number of traces that cannot be judged and the first error.
 
     Yield nothing if all traces can be judged. ``of`` comes after the number: empty, or
     `` of the baseline``.
     """
-    yield from _count_texts(traces, of, traces.unread, "cannot be judged")
+    yield from _count_texts(trace_set, of, trace_set.unread, "cannot be judged")
 
 
-def _warning_texts(traces: TraceSet, of: str) -> Iterator[str]:
+def _warning_texts(trace_set: TraceSet, of: str) -> Iterator[str]:
     """Yield a sentence with the number of traces that have warnings and the first warning.
 
     Yield nothing if there are no warnings. ``of`` comes after the number: empty, or
     `` of the baseline``.
     """
-    yield from _count_texts(traces, of, traces.warnings, "have warnings")
+    yield from _count_texts(trace_set, of, trace_set.warnings, "have warnings")
 
 
-def _count_texts(traces: TraceSet, of: str, diagnostics: Sequence[tuple[str, Diagnostic]], verb: str) -> Iterator[str]:
+def _count_texts(
+    trace_set: TraceSet, of: str, diagnostics: Sequence[tuple[str, Diagnostic]], verb: str
+) -> Iterator[str]:
     if diagnostics:
         name, diagnostic = diagnostics[0]
-        total = len(traces.unread) + len(traces.names)
+        total = len(trace_set.unread) + len(trace_set.names)
         yield f"{len(diagnostics)} of {total} traces{of} {verb}: first `{name}` ({one_line(diagnostic)})"

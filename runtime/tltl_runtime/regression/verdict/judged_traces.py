@@ -33,7 +33,7 @@ _NEVER: Final = 3.0
 
 @record
 class TraceSet:
-    """Judged traces: their ``names``, and an episode that describes each, in the same order.
+    """Judged traces: their ``names``, an episode that describes each, and their ``verdicts``, in the same order.
 
     ``unread`` has the traces that cannot be judged: pairs of a name and the first error. They are not in
     ``names``. ``warnings`` has pairs of the name of a judged trace and its first warning. ``others`` are
@@ -45,6 +45,7 @@ class TraceSet:
     unread: tuple[tuple[str, Diagnostic], ...]
     warnings: tuple[tuple[str, Diagnostic], ...] = ()
     others: tuple[str, ...] = ()
+    verdicts: tuple[traces.TraceVerdict, ...] = ()
 
 
 NO_TRACES: Final = TraceSet((), (), ())
@@ -141,6 +142,7 @@ def _trace_set(
         tuple((trace.name, trace.diagnostics[0]) for trace in judged if trace.verdict is None),
         tuple((trace.name, trace.diagnostics[0]) for trace in read if trace.diagnostics),
         others,
+        tuple(trace.verdict for trace in read if trace.verdict is not None),
     )
 
 
