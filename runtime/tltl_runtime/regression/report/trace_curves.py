@@ -36,6 +36,7 @@ class TraceCurves:
     atoms: tuple[tuple[float, ...], ...]
     arrivals: tuple[Arrival, ...]
     kind: Literal["trace", "episode"] = "trace"
+    is_accepted: bool = False
 
     @property
     def steps(self) -> int:
@@ -62,6 +63,7 @@ def episode_curves(index: int, episode: RecordedEpisode) -> TraceCurves:
         atoms=tuple(map(tuple, episode.atoms.tolist())),
         arrivals=arrivals_of(episode),
         kind="episode",
+        is_accepted=episode.success,
     )
 
 
@@ -75,8 +77,9 @@ def _curves(judged: JudgedTraces, index: int) -> Iterator[TraceCurves]:
         if verdict is None or verdict.details is None or verdict.details.arrivals != arrivals:
             return
         rows = tuple(_atom_values(fspa, name, data, trace.summary.steps))
-        failed = trace_end_text(fspa, trace.cause, trace.by, [trace])
-        yield TraceCurves(name, "accepted" if trace.summary.success else failed, rows, trace.arrivals)
+        is_accepted = trace.summary.success
+        ended = "accepted" if is_accepted else trace_end_text(fspa, trace.cause, trace.by, [trace])
+        yield TraceCurves(name, ended, rows, trace.arrivals, is_accepted=is_accepted)
 
 
 def _atom_values(fspa: Fspa, name: str, data: bytes, steps: int) -> Iterator[tuple[float, ...]]:

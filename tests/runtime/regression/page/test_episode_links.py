@@ -8,7 +8,8 @@ import pytest
 
 from tests.runtime.regression.page import samples
 from tltl_runtime.regression.explain.explain import Finding
-from tltl_runtime.regression.report.page.episode_links import episode_links
+from tltl_runtime.regression.report.page.episode_links import episode_links, trace_links
+from tltl_runtime.regression.report.trace_curves import TraceCurves
 from tltl_runtime.stealth.recordings.episode import Episode
 
 
@@ -56,3 +57,19 @@ def test_a_link_begins_at_the_step_nearest_to_four_seconds_before_the_end() -> N
     links = episode_links(Finding("fails", (0,)), {0: episode}, "a")
     before_end = round(4.0 / 0.15)
     assert links is not None and f'href="#a/0/{len(episode.actions) - before_end}"' in links
+
+
+@pytest.mark.parametrize(
+    ("episodes", "others", "words"),
+    [
+        (tuple(range(20)), False, "show 3 of 20 traces: 0.csv 1.csv 2.csv"),
+        (tuple(range(20)), True, "show 3 of 20 traces that do not: 0.csv 1.csv 2.csv"),
+        ((0, 1), False, "show traces: 0.csv 1.csv"),
+        ((1,), False, "show trace: 1.csv"),
+        ((1,), True, "show a trace that does not: 1.csv"),
+    ],
+)
+def test_links_to_traces_say_how_many_of_them_are_drawn(episodes: tuple[int, ...], others: bool, words: str) -> None:
+    drawn = {index: TraceCurves(f"{index}.csv", "", ((0.5,),), ()) for index in range(3)}
+    links = trace_links(Finding("fails", episodes, others=others), drawn, "a")
+    assert links is not None and re.sub(r"<.*?>", "", links).strip() == words

@@ -64,8 +64,10 @@ def trace_links(finding: Finding, traces: Mapping[int, TraceCurves], slug: str) 
         return None
     kind = next(iter(shown.values())).kind
     named = f"{'an' if kind == 'episode' else 'a'} {kind} that does not" if finding.others else kind
-    if len(shown) > 1:
-        named = f"{kind}s that do not" if finding.others else f"{kind}s"
+    total = len(finding.episodes)
+    if total > 1:
+        counted = f"{len(shown)} of {total} {kind}s" if len(shown) < total else f"{kind}s"
+        named = f"{counted} that do not" if finding.others else counted
     links = [
         _Link(Path(curves.name).name, f"#{anchor(slug, index)}", f"show the {kind} {curves.name}")
         for index, curves in shown.items()

@@ -14,6 +14,7 @@ from typing import Final
 from markupsafe import Markup
 
 from tltl_runtime.regression.explain.stages import is_opposite_asked
+from tltl_runtime.regression.explain.trace_ends import step_text
 from tltl_runtime.regression.report.page.render import render
 from tltl_runtime.regression.report.trace_curves import TraceCurves
 from tltl_runtime.support.markup import coordinate, element
@@ -21,7 +22,9 @@ from tltlc.api import EMPTY, Fspa, label_text, record
 
 _WIDTH: Final = 860
 _LEFT: Final = 170
-_RIGHT: Final = 10
+_RIGHT: Final = 26
+_LAST_STATE: Final = 20
+"""The least width of the box of the last state, which may reach into the right margin."""
 _ROW: Final = 26
 _STATES: Final = 22
 _AXIS: Final = 30
@@ -55,7 +58,9 @@ class _Chart:
 def trace_charts(
     fspa: Fspa, traces: Mapping[int, TraceCurves], slug: str, films: Mapping[int, bytes] = EMPTY
 ) -> Markup:
-    """Return the pictures of recorded traces or episodes as HTML, each below its film if there is one.
+    """Return the pictures of recorded traces or episodes as HTML: those that failed, then those that were accepted.
+
+    Each is below its film if there is one.
 
     ``traces`` and ``films`` (WebP) are by index. ``slug`` is the case's short name in addresses within
     the page.
@@ -69,7 +74,7 @@ def trace_charts(
             picture=_chart(fspa, curves),
             film=base64.b64encode(films.get(index, b"")).decode(),
         )
-        for index, curves in sorted(traces.items())
+        for index, curves in sorted(traces.items(), key=lambda item: (item[1].is_accepted, item[0]))
     ]
     return render("trace_charts.html", charts=charts)
 
@@ -113,7 +118,10 @@ def _state_strip(fspa: Fspa, curves: TraceCurves) -> Iterator[Markup]:
     starts = [*{start // size: (state, start) for state, start in stays}.values(), (0, curves.steps)]
     for (state, start), (_, end) in pairwise(starts):
         left, right = _x(start, curves.steps), _x(end, curves.steps)
-        title = element("title", f"state {state}, from step {start + 1}: {label_text(fspa, state)}")
+        if end == curves.steps:
+            # The last state is often entered at the last sample, and would be too narrow to be seen.
+            right = max(right, left + _LAST_STATE)
+        title = element("title", f"state {state}, from {step_text(fspa, start + 1)}: {label_text(fspa, state)}")
         box = {"x": coordinate(left), "width": coordinate(max(0.5, right - left)), "y": 2, "height": _STATES - 6}
         kind = fspa.states[state].verdict
         yield element("rect", title, class_=f"stay {kind} {'odd' if state % 2 else 'even'}", **box)
