@@ -222,6 +222,7 @@ def test_a_spec_changed_since_the_training_is_reviewed(game: Path) -> None:
         assert done.report.edits[0].startswith("changed since the baseline: room.toml")
         assert done.report.headline == done.report.main[0] == done.report.reasons[0]
         assert done.report.headline.startswith("the spec `easy` has changed since the policy was trained (")
+        assert done.report.status == "outdated"
         assert done.case_to_train is None, "a training would be for the old spec"
     assert results[2].case_to_train is not None
     edit("plan.tltl", "reach alive", "reach alve")
