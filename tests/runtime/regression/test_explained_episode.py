@@ -104,7 +104,7 @@ def test_findings_compare_failures_with_the_baseline() -> None:
         [samples.explained_of(index, episode) for index, episode in enumerate(episodes)] for episodes in (now, before)
     )
     stage, *ends, remaining = findings(now[0].level, now[0].fspa, explained_episodes, baseline_episodes)
-    assert stage.text.endswith("before: in 2 of 2 episodes") and stage.episodes
+    assert "before: in 2 of 2 episodes" in stage.text and stage.episodes
     assert ends and "this remained" in remaining.text
     assert all("`guard`" in end.text and "before: in 0 of 2 episodes" in end.text for end in ends)
     assert findings(before[0].level, before[0].fspa, baseline_episodes, baseline_episodes)[0].text.endswith("as before")
