@@ -6,7 +6,7 @@ from collections.abc import Collection, Mapping, Sequence
 from copy import copy
 from typing import Any, Final, NamedTuple, SupportsFloat
 
-from tltlc.automaton.fspa import Fspa, Verdict
+from tltlc.automaton.fspa import Fspa, State, Verdict
 from tltlc.automaton.text import label_text
 from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.monitor.arguments import automaton_argument, reward_options_argument
@@ -183,7 +183,7 @@ class Monitor:
         improving = self._tables.improving[source] if source == target.id else ()
         labels = self._labels.get(target.id)
         if labels is None:
-            labels = self._labels[target.id] = (str(target.label), label_text(self.fspa, target.id))
+            labels = self._labels[target.id] = self._label(target)
         if self.failure is None and target.verdict == "violated":
             cause = cause_of(edge_taken, values) if breaks(self.fspa, edge_taken) else None
             self.failure = Failure(self.steps + 1, source, cause)
@@ -207,6 +207,13 @@ class Monitor:
             label_english=labels[1],
             **self._failed(),
         )
+
+    def _label(self, state: State) -> tuple[str, str]:
+        """Return the label of a state as a formula and in words, also if what atoms remember nests deep."""
+        from tltlc.automaton.finite.blowup import recursion_room
+
+        with recursion_room():
+            return str(state.label), label_text(self.fspa, state.id)
 
     def _failed(self) -> dict[str, Any]:
         """Return the fields of a step about the failure."""
