@@ -9,6 +9,7 @@ from collections.abc import Iterator, Sequence
 import pytest
 
 from tltlc.automaton.fspa import Fspa
+from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import TltlError
 from tltlc.monitor.monitor import Monitor, Step
 from tltlc.pipeline import compile_text, decode_artefact, encode_artefact
@@ -215,7 +216,8 @@ def test_waiting_for_an_answer_costs_no_distance(monkeypatch: pytest.MonkeyPatch
 )
 def test_spellings_of_deadlines_have_their_meaning(form: str, meaning: str) -> None:
     (written,), (meant,) = (compile_text(f"{SIGNALS}spec s {{ {clause} }}") for clause in (form, meaning))
-    assert written == meant
+    # Only the texts of the clauses differ.
+    assert replace(written, clauses=()) == replace(meant, clauses=())
 
 
 @pytest.mark.parametrize("clock", ["60 Hz", "varies"])

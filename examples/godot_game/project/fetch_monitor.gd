@@ -17,16 +17,19 @@
 #         print(monitor.progress, monitor.reward)
 #     else:
 #         push_error(monitor.message())
+#
+# A sample with a signal that was never set is refused.  A game that sets only the events that
+# happened calls `sample.sparse()` instead of `clear`: then bools are false.
 
 extends Reference
 
 ## What the verdict would be if the trace ended here: for good, so far, not yet, never.
 enum Verdict { SATISFIED, HOLDING, PENDING, VIOLATED }
 
-## Why a sample was refused: a signal is missing, or not a finite number; an atom divides by zero,
-## takes a root or power that does not exist, or is too large to compute; exclusive atoms hold at
-## once; a param is not in its range.
-enum Problem { NONE, NOT_FINITE, BY_ZERO, NO_ROOT, TOO_LARGE, TOGETHER, WRONG_PARAM }
+## Why a sample was refused: a number is missing, or not finite; an atom divides by zero, takes a
+## root or power that does not exist, or is too large to compute; exclusive atoms hold at once; a
+## param is not in its range; a bool is missing.
+enum Problem { NONE, NOT_FINITE, BY_ZERO, NO_ROOT, TOO_LARGE, TOGETHER, WRONG_PARAM, NOT_SET }
 
 ## Names as the spec has them, and the members of a sample, in the same order as the signals.
 const SIGNALS: Array = [
@@ -54,8 +57,8 @@ const ATOMS: Array = [
 	"fallen",
 ]
 
-## For each state: what remains to be satisfied, the verdict, whether it is accepting, whether an
-## episode ends on entry.
+## For each state: what remains to be satisfied, the same in words, the verdict, whether it is
+## accepting, whether an episode ends on entry.
 const LABELS: Array = [
 	"F(at(key, 0.8) & X F(at(door, 1.2) & X F(at(ferry, 1.2) & X F at(beacon, 1)))) & G(!caught & !fallen)",
 	"F(at(door, 1.2) & X F(at(ferry, 1.2) & X F at(beacon, 1))) & G(!caught & !fallen)",
@@ -63,6 +66,14 @@ const LABELS: Array = [
 	"F(at(ferry, 1.2) & X F at(beacon, 1)) & G(!caught & !fallen)",
 	"F at(beacon, 1) & G(!caught & !fallen)",
 	"G(!caught & !fallen)",
+]
+const LABELS_ENGLISH: Array = [
+	"Reach at(key, 0.8), then at(door, 1.2), then at(ferry, 1.2), then at(beacon, 1); and avoid caught throughout, and avoid fallen throughout.",
+	"Reach at(door, 1.2), then at(ferry, 1.2), then at(beacon, 1); and avoid caught throughout, and avoid fallen throughout.",
+	"The spec is violated.",
+	"Reach at(ferry, 1.2), then at(beacon, 1); and avoid caught throughout, and avoid fallen throughout.",
+	"Reach at(beacon, 1); and avoid caught throughout, and avoid fallen throughout.",
+	"Avoid caught throughout, and avoid fallen throughout.",
 ]
 const VERDICTS: Array = [
 	Verdict.PENDING,
@@ -75,18 +86,32 @@ const VERDICTS: Array = [
 const ACCEPTING: Array = [false, false, false, false, false, true]
 const ENDS: Array = [false, false, true, false, false, true]
 
+## What a step can fail at: the clause that it breaks, and the atom that decides it; "" for none.
+const FAILED_CLAUSES: Array = ["avoid caught", "avoid fallen"]
+const FAILED_ATOMS: Array = ["caught", "fallen"]
 
-## A sample, in SI units.  A number that is not finite counts as missing.
+
+## A sample, in SI units.  A number that is not finite counts as missing, and a bool that is null.
 class Sample:
 	var distance_key: float = INF  ## distance(key): In [0, 25] m.
 	var distance_door: float = INF  ## distance(door): In [0, 25] m.
 	var distance_ferry: float = INF  ## distance(ferry): In [0, 25] m.
 	var distance_beacon: float = INF  ## distance(beacon): In [0, 25] m.
-	var caught: bool = false  ## The guard has reached the player.
-	var fallen: bool = false  ## The player is in the chasm.
+	var caught = null  ## The guard has reached the player.
+	var fallen = null  ## The player is in the chasm.
 
-	## Makes all numbers missing, so that a forgotten one is detected; bools are false.
+	## Makes all signals missing, so that a forgotten one is detected.
 	func clear() -> void:
+		distance_key = INF
+		distance_door = INF
+		distance_ferry = INF
+		distance_beacon = INF
+		caught = null
+		fallen = null
+
+	## Makes all numbers missing, and all bools false: for games that set only the events that
+	## happened.
+	func sparse() -> void:
 		distance_key = INF
 		distance_door = INF
 		distance_ferry = INF
@@ -106,6 +131,11 @@ var robustness: float = 0.0  ## of the edge taken, between -1 and 1
 ## to acceptance; -1 if the automaton moved or no edge improves it.
 var limiting: int = -1
 var steps: int = 0
+## The number, from 1, of the first step after which no continuation of the trace can meet the
+## specification; 0 if there is one.
+var failed_step: int = 0
+## The place in FAILED_CLAUSES and FAILED_ATOMS of what this step failed at; -1 for none.
+var failure: int = -1
 ## What was wrong with the last sample.
 var problem: int = Problem.NONE
 ## The number of the signal, atom, group or param that has the problem.
@@ -128,6 +158,8 @@ func reset() -> void:
 	robustness = 0.0
 	limiting = -1
 	steps = 0
+	failed_step = 0
+	failure = -1
 	problem = Problem.NONE
 	which = 0
 
@@ -149,10 +181,16 @@ func step(sample: Sample) -> bool:
 	var distance_beacon: float = sample.distance_beacon
 	if not (distance_beacon >= 0.0 and distance_beacon <= 25.0):
 		distance_beacon = _read(3, distance_beacon, 0.0, 25.0)
-	var caught: float = 1.0 if sample.caught else 0.0
-	var fallen: float = 1.0 if sample.fallen else 0.0
+	if sample.caught == null and problem == Problem.NONE:
+		problem = Problem.NOT_SET
+		which = 4
+	if sample.fallen == null and problem == Problem.NONE:
+		problem = Problem.NOT_SET
+		which = 5
 	if problem != Problem.NONE:
 		return false
+	var caught: float = 1.0 if sample.caught else 0.0
+	var fallen: float = 1.0 if sample.fallen else 0.0
 
 	# caught: The guard has reached the player.
 	var caught_atom: float = 2.0 * caught - 1.0
@@ -173,6 +211,12 @@ func step(sample: Sample) -> bool:
 			# caught | fallen
 			state = 2
 			robustness = fallen_atom if fallen_atom > caught_atom else caught_atom
+			if caught_atom > 0.0:
+				failure = 0
+				failed_step = steps + 1
+			else:
+				failure = 1
+				failed_step = steps + 1
 			reached = 0.0
 			limiting = -1
 		elif at_key_0_8 <= 0.0 and caught_atom <= 0.0 and fallen_atom <= 0.0:
@@ -205,6 +249,12 @@ func step(sample: Sample) -> bool:
 			# caught | fallen
 			state = 2
 			robustness = fallen_atom if fallen_atom > caught_atom else caught_atom
+			if caught_atom > 0.0:
+				failure = 0
+				failed_step = steps + 1
+			else:
+				failure = 1
+				failed_step = steps + 1
 			reached = 0.0
 			limiting = -1
 		elif at_door_1_2 <= 0.0 and caught_atom <= 0.0 and fallen_atom <= 0.0:
@@ -244,6 +294,12 @@ func step(sample: Sample) -> bool:
 			# caught | fallen
 			state = 2
 			robustness = fallen_atom if fallen_atom > caught_atom else caught_atom
+			if caught_atom > 0.0:
+				failure = 0
+				failed_step = steps + 1
+			else:
+				failure = 1
+				failed_step = steps + 1
 			reached = 0.0
 			limiting = -1
 		elif at_ferry_1_2 <= 0.0 and caught_atom <= 0.0 and fallen_atom <= 0.0:
@@ -276,6 +332,12 @@ func step(sample: Sample) -> bool:
 			# caught | fallen
 			state = 2
 			robustness = fallen_atom if fallen_atom > caught_atom else caught_atom
+			if caught_atom > 0.0:
+				failure = 0
+				failed_step = steps + 1
+			else:
+				failure = 1
+				failed_step = steps + 1
 			reached = 0.0
 			limiting = -1
 		elif at_beacon_1 <= 0.0 and caught_atom <= 0.0 and fallen_atom <= 0.0:
@@ -302,6 +364,12 @@ func step(sample: Sample) -> bool:
 			# caught | fallen
 			state = 2
 			robustness = fallen_atom if fallen_atom > caught_atom else caught_atom
+			if caught_atom > 0.0:
+				failure = 0
+				failed_step = steps + 1
+			else:
+				failure = 1
+				failed_step = steps + 1
 			reached = 0.0
 			limiting = -1
 		else:
@@ -333,9 +401,26 @@ func label() -> String:
 	return LABELS[state]
 
 
+## The label in words.
+func label_english() -> String:
+	return LABELS_ENGLISH[state]
+
+
 ## The name of the limiting atom, "" for none.
 func limiting_atom() -> String:
 	return "" if limiting < 0 else ATOMS[limiting]
+
+
+## The clause that the step `failed_step` broke, "" if only several clauses together cannot be met
+## any more.
+func failed_clause() -> String:
+	return "" if failure < 0 else FAILED_CLAUSES[failure]
+
+
+## The atom that decides it, "" for none: the one that had to hold but did not, or else the one that
+## must not hold but did.
+func failed_atom() -> String:
+	return "" if failure < 0 else FAILED_ATOMS[failure]
 
 
 ## Why the last sample was refused.
@@ -345,6 +430,8 @@ func message() -> String:
 			return ""
 		Problem.NOT_FINITE:
 			return "step %d: no finite number for the signal `%s`" % [steps + 1, SIGNALS[which]]
+		Problem.NOT_SET:
+			return "step %d: the signal `%s` is not set" % [steps + 1, SIGNALS[which]]
 	var reason: String = "is too large to compute"
 	if problem == Problem.BY_ZERO:
 		reason = "divides by zero"

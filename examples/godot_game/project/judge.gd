@@ -66,7 +66,7 @@ func close() -> void:
 func kept() -> Array:
 	return [
 		monitor, sample, monitor.state, monitor.verdict, monitor.accepting, monitor.done, monitor.progress,
-		monitor.steps
+		monitor.steps, monitor.failed_step, monitor.failure
 	]
 
 
@@ -80,3 +80,5 @@ func restore(values: Array) -> void:
 	monitor.done = values[5]
 	monitor.progress = values[6]
 	monitor.steps = values[7]
+	monitor.failed_step = values[8]
+	monitor.failure = values[9]

@@ -15,29 +15,38 @@
 #         print(monitor.progress, monitor.reward)
 #     else:
 #         push_error(monitor.message())
+#
+# A sample with a signal that was never set is refused.  A game that sets only the events that
+# happened calls `sample.sparse()` instead of `clear`: then bools are false.
 
 extends Reference
 
 ## What the verdict would be if the trace ended here: for good, so far, not yet, never.
 enum Verdict { SATISFIED, HOLDING, PENDING, VIOLATED }
 
-## Why a sample was refused: a signal is missing, or not a finite number; an atom divides by zero,
-## takes a root or power that does not exist, or is too large to compute; exclusive atoms hold at
-## once; a param is not in its range.
-enum Problem { NONE, NOT_FINITE, BY_ZERO, NO_ROOT, TOO_LARGE, TOGETHER, WRONG_PARAM }
+## Why a sample was refused: a number is missing, or not finite; an atom divides by zero, takes a
+## root or power that does not exist, or is too large to compute; exclusive atoms hold at once; a
+## param is not in its range; a bool is missing.
+enum Problem { NONE, NOT_FINITE, BY_ZERO, NO_ROOT, TOO_LARGE, TOGETHER, WRONG_PARAM, NOT_SET }
 
 ## Names as the spec has them, and the members of a sample, in the same order as the signals.
 const SIGNALS: Array = ["distance(ferry)", "distance(beacon)", "fallen"]
 const FIELDS: Array = ["distance_ferry", "distance_beacon", "fallen"]
 const ATOMS: Array = ["at(ferry, 1.2)", "at(beacon, 1)", "fallen"]
 
-## For each state: what remains to be satisfied, the verdict, whether it is accepting, whether an
-## episode ends on entry.
+## For each state: what remains to be satisfied, the same in words, the verdict, whether it is
+## accepting, whether an episode ends on entry.
 const LABELS: Array = [
 	"F(at(ferry, 1.2) & X F at(beacon, 1)) & G !fallen",
 	"F at(beacon, 1) & G !fallen",
 	"false",
 	"G !fallen",
+]
+const LABELS_ENGLISH: Array = [
+	"Reach at(ferry, 1.2), then at(beacon, 1), and avoid fallen throughout.",
+	"Reach at(beacon, 1), and avoid fallen throughout.",
+	"The spec is violated.",
+	"Avoid fallen throughout.",
 ]
 const VERDICTS: Array = [
 	Verdict.PENDING,
@@ -48,15 +57,26 @@ const VERDICTS: Array = [
 const ACCEPTING: Array = [false, false, false, true]
 const ENDS: Array = [false, false, true, true]
 
+## What a step can fail at: the clause that it breaks, and the atom that decides it; "" for none.
+const FAILED_CLAUSES: Array = ["avoid fallen"]
+const FAILED_ATOMS: Array = ["fallen"]
 
-## A sample, in SI units.  A number that is not finite counts as missing.
+
+## A sample, in SI units.  A number that is not finite counts as missing, and a bool that is null.
 class Sample:
 	var distance_ferry: float = INF  ## distance(ferry): In [0, 25] m.
 	var distance_beacon: float = INF  ## distance(beacon): In [0, 25] m.
-	var fallen: bool = false  ## The player is in the chasm.
+	var fallen = null  ## The player is in the chasm.
 
-	## Makes all numbers missing, so that a forgotten one is detected; bools are false.
+	## Makes all signals missing, so that a forgotten one is detected.
 	func clear() -> void:
+		distance_ferry = INF
+		distance_beacon = INF
+		fallen = null
+
+	## Makes all numbers missing, and all bools false: for games that set only the events that
+	## happened.
+	func sparse() -> void:
 		distance_ferry = INF
 		distance_beacon = INF
 		fallen = false
@@ -73,6 +93,11 @@ var robustness: float = 0.0  ## of the edge taken, between -1 and 1
 ## to acceptance; -1 if the automaton moved or no edge improves it.
 var limiting: int = -1
 var steps: int = 0
+## The number, from 1, of the first step after which no continuation of the trace can meet the
+## specification; 0 if there is one.
+var failed_step: int = 0
+## The place in FAILED_CLAUSES and FAILED_ATOMS of what this step failed at; -1 for none.
+var failure: int = -1
 ## What was wrong with the last sample.
 var problem: int = Problem.NONE
 ## The number of the signal, atom, group or param that has the problem.
@@ -95,6 +120,8 @@ func reset() -> void:
 	robustness = 0.0
 	limiting = -1
 	steps = 0
+	failed_step = 0
+	failure = -1
 	problem = Problem.NONE
 	which = 0
 
@@ -110,9 +137,12 @@ func step(sample: Sample) -> bool:
 	var distance_beacon: float = sample.distance_beacon
 	if not (distance_beacon >= 0.0 and distance_beacon <= 25.0):
 		distance_beacon = _read(1, distance_beacon, 0.0, 25.0)
-	var fallen: float = 1.0 if sample.fallen else 0.0
+	if sample.fallen == null and problem == Problem.NONE:
+		problem = Problem.NOT_SET
+		which = 2
 	if problem != Problem.NONE:
 		return false
+	var fallen: float = 1.0 if sample.fallen else 0.0
 
 	# fallen: The player is in the chasm.
 	var fallen_atom: float = 2.0 * fallen - 1.0
@@ -130,6 +160,8 @@ func step(sample: Sample) -> bool:
 			# fallen
 			state = 2
 			robustness = fallen_atom
+			failure = 0
+			failed_step = steps + 1
 			reached = 0.0
 			limiting = -1
 		elif at_ferry_1_2 <= 0.0 and fallen_atom <= 0.0:
@@ -160,6 +192,8 @@ func step(sample: Sample) -> bool:
 			# fallen
 			state = 2
 			robustness = fallen_atom
+			failure = 0
+			failed_step = steps + 1
 			reached = 0.0
 			limiting = -1
 		elif at_beacon_1 <= 0.0 and fallen_atom <= 0.0:
@@ -191,6 +225,8 @@ func step(sample: Sample) -> bool:
 			# fallen
 			state = 2
 			robustness = fallen_atom
+			failure = 0
+			failed_step = steps + 1
 			reached = 0.0
 			limiting = -1
 		else:
@@ -222,9 +258,26 @@ func label() -> String:
 	return LABELS[state]
 
 
+## The label in words.
+func label_english() -> String:
+	return LABELS_ENGLISH[state]
+
+
 ## The name of the limiting atom, "" for none.
 func limiting_atom() -> String:
 	return "" if limiting < 0 else ATOMS[limiting]
+
+
+## The clause that the step `failed_step` broke, "" if only several clauses together cannot be met
+## any more.
+func failed_clause() -> String:
+	return "" if failure < 0 else FAILED_CLAUSES[failure]
+
+
+## The atom that decides it, "" for none: the one that had to hold but did not, or else the one that
+## must not hold but did.
+func failed_atom() -> String:
+	return "" if failure < 0 else FAILED_ATOMS[failure]
 
 
 ## Why the last sample was refused.
@@ -234,6 +287,8 @@ func message() -> String:
 			return ""
 		Problem.NOT_FINITE:
 			return "step %d: no finite number for the signal `%s`" % [steps + 1, SIGNALS[which]]
+		Problem.NOT_SET:
+			return "step %d: the signal `%s` is not set" % [steps + 1, SIGNALS[which]]
 	var reason: String = "is too large to compute"
 	if problem == Problem.BY_ZERO:
 		reason = "divides by zero"
