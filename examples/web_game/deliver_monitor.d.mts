@@ -13,6 +13,14 @@ export interface Signals {
 /** Params, in SI units. */
 export type Params = Record<string, never>;
 
+/** A sample of a monitor that is `sparse`: missing bools are false. */
+export type SparseSignals = Signals;
+
+export interface Options {
+  /** Samples have only the events that happened: missing bools are false, and not an error. Numbers are needed. */
+  sparse?: boolean;
+}
+
 /** What the verdict would be if the trace ended here: for good, so far, not yet, never. */
 export type Verdict = "satisfied" | "holding" | "pending" | "violated";
 
@@ -37,6 +45,14 @@ export class Result {
    * moved or no edge improves it.
    */
   limiting: string | null;
+  /** What remains to be satisfied, in words. */
+  label_english: string;
+  /** The clause that the step `failed_step` broke; null if only several clauses together cannot be met any more. */
+  failed_clause: string | null;
+  /** The atom that decides it: the one that had to hold but did not, or else the one that must not hold but did. */
+  failed_atom: string | null;
+  /** The first step, from 1, after which no continuation of the trace can meet the specification; null before it. */
+  failed_step: number | null;
 }
 
 /** A sample that the automaton cannot take, or a param value that is not allowed; the state is unchanged. */
@@ -44,8 +60,12 @@ export class MonitorError extends Error {
   constructor(message: string);
 }
 
-/** Runs the automaton over one trace after another. */
-export class Monitor {
+/**
+ * Runs the automaton over one trace after another.  One that is `sparse` is a `Monitor<SparseSignals>`:
+ *
+ *     const monitor = new Monitor<SparseSignals>({}, { sparse: true });
+ */
+export class Monitor<Sample extends SparseSignals = Signals> {
   readonly state: number;
   readonly steps: number;
   readonly progress: number;
@@ -54,14 +74,15 @@ export class Monitor {
   readonly notices: readonly string[];
 
   /** `params` override values of params; throws MonitorError if one is not in its range. */
-  constructor(params?: Partial<Params>);
+  constructor(params?: Partial<Params>, options?: Options);
 
   /** Go back to the state before the first sample. */
   reset(): void;
 
   /**
    * Take one sample; the result is `result` or a new one.  Throws MonitorError, and leaves the state unchanged, if a
-   * signal is missing or not finite, an atom has no value, or exclusive atoms hold at once.
+   * signal is missing or not finite, an atom has no value, or exclusive atoms hold at once.  A bool may be missing only
+   * if the monitor is `sparse`: then it is false.
    */
-  step(signals: Signals, result?: Result): Result;
+  step(signals: Sample, result?: Result): Result;
 }

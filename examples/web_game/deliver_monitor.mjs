@@ -20,6 +20,7 @@
 
 /** @typedef {import("./deliver_monitor.d.mts").Signals} Signals */
 /** @typedef {import("./deliver_monitor.d.mts").Params} Params */
+/** @typedef {import("./deliver_monitor.d.mts").Options} Options */
 /** @typedef {import("./deliver_monitor.d.mts").Verdict} Verdict */
 
 /**
@@ -36,14 +37,25 @@ const SIGNALS = [
 const PARAMS = [];
 
 /**
- * For each state: what remains to be satisfied, its verdict, whether it is accepting, whether an episode ends on entry.
- * @type {ReadonlyArray<{label: string, verdict: Verdict, accepting: boolean, ends: boolean}>}
+ * For each state: what remains to be satisfied, as a formula and in words, its verdict, whether it is accepting, whether
+ * an episode ends on entry.
+ * @type {ReadonlyArray<{label: string, label_english: string, verdict: Verdict, accepting: boolean, ends: boolean}>}
  */
 const STATES = [
-  { label: "F((parcel_distance < 0.5) & X F(door_distance < 0.5)) & G !(dog_distance < 1)", verdict: "pending", accepting: false, ends: false },
-  { label: "F(door_distance < 0.5) & G !(dog_distance < 1)", verdict: "pending", accepting: false, ends: false },
-  { label: "false", verdict: "violated", accepting: false, ends: true },
-  { label: "G !(dog_distance < 1)", verdict: "holding", accepting: true, ends: true },
+  { label: "F((parcel_distance < 0.5) & X F(door_distance < 0.5)) & G !(dog_distance < 1)", label_english: "Reach parcel_distance < 0.5, then door_distance < 0.5, and avoid dog_distance < 1 throughout.", verdict: "pending", accepting: false, ends: false },
+  { label: "F(door_distance < 0.5) & G !(dog_distance < 1)", label_english: "Reach door_distance < 0.5, and avoid dog_distance < 1 throughout.", verdict: "pending", accepting: false, ends: false },
+  { label: "false", label_english: "The spec is violated.", verdict: "violated", accepting: false, ends: true },
+  { label: "G !(dog_distance < 1)", label_english: "Avoid dog_distance < 1 throughout.", verdict: "holding", accepting: true, ends: true },
+];
+
+/** @typedef {{clause: string | null, atom: string | null, step: number | null}} Failure */
+
+/** @type {Failure} */
+const NOT_FAILED = { clause: null, atom: null, step: null };
+
+/** What a step can fail at: the clause that it breaks, and the atom that decides it. */
+const FAILURES = [
+  { clause: "avoid dog_distance < 1 m", atom: "dog_distance < 1" },
 ];
 
 /** The result of one sample. */
@@ -70,6 +82,23 @@ export class Result {
      * @type {string | null}
      */
     this.limiting = null;
+    /** What remains to be satisfied, in words. */
+    this.label_english = "";
+    /**
+     * The clause that the step `failed_step` broke; null if only several clauses together cannot be met any more.
+     * @type {string | null}
+     */
+    this.failed_clause = null;
+    /**
+     * The atom that decides it: the one that had to hold but did not, or else the one that must not hold but did.
+     * @type {string | null}
+     */
+    this.failed_atom = null;
+    /**
+     * The first step, from 1, after which no continuation of the trace can meet the specification; null before it.
+     * @type {number | null}
+     */
+    this.failed_step = null;
   }
 }
 
@@ -85,13 +114,18 @@ export class MonitorError extends Error {
 /** Runs the automaton over one trace after another. */
 export class Monitor {
   #noticed = new Set();
+  /** What the trace fails at. */
+  #failure = NOT_FAILED;
+  #sparse;
 
   /**
    * @param {Partial<Params>} [params] override values of params, in SI units
+   * @param {Options} [options] `sparse`: samples have only the events that happened; missing bools are false
    * @throws {MonitorError} if there is no such param, or its value is not in its range
    */
-  constructor(params = {}) {
+  constructor(params = {}, options = {}) {
     paramValues(params);
+    this.#sparse = options.sparse === true;
     /**
      * Messages about values that were clamped, one for each signal and atom.
      * @type {string[]}
@@ -109,6 +143,7 @@ export class Monitor {
     this.steps = 0;
     this.progress = 0;
     this.done = false;
+    this.#failure = NOT_FAILED;
   }
 
   /**
@@ -117,7 +152,7 @@ export class Monitor {
    * @param {Signals} signals numbers in SI units, or booleans
    * @param {Result} [result] the result to fill; a new one if it is left out
    * @throws {MonitorError} if a signal is missing or not finite, an atom has no value, or exclusive atoms hold at
-   *   once; the state is unchanged
+   *   once; the state is unchanged.  A bool may be missing only if the monitor is `sparse`: then it is false
    */
   step(signals, result = new Result()) {
     const steps = this.steps + 1;
@@ -142,6 +177,7 @@ export class Monitor {
     let robustness = 0;
     let progress = 0;
     let limiting = null;
+    let failure = -1;
     switch (this.state) {
       // F((parcel_distance < 0.5) & X F(door_distance < 0.5)) & G !(dog_distance < 1)
       case 0: {
@@ -151,6 +187,7 @@ export class Monitor {
           // dog_distance < 1
           target = 2;
           robustness = dog_distance_under_1;
+          failure = 0;
           progress = 0;
           limiting = null;
         } else if (parcel_distance_under_0_5 <= 0 && dog_distance_under_1 <= 0) {
@@ -181,6 +218,7 @@ export class Monitor {
           // dog_distance < 1
           target = 2;
           robustness = dog_distance_under_1;
+          failure = 0;
           progress = 0;
           limiting = null;
         } else if (door_distance_under_0_5 <= 0 && dog_distance_under_1 <= 0) {
@@ -218,6 +256,7 @@ export class Monitor {
           // dog_distance < 1
           target = 2;
           robustness = dog_distance_under_1;
+          failure = 0;
           progress = 0;
           limiting = null;
         } else {
@@ -251,6 +290,8 @@ export class Monitor {
       done = ends || steps >= 60;
     }
 
+    if (failure >= 0) this.#failure = { ...FAILURES[failure], step: steps };
+
     this.state = target;
     this.steps = steps;
     this.progress = best;
@@ -265,15 +306,23 @@ export class Monitor {
     // Adding 0 turns -0 into 0.
     result.robustness = robustness + 0;
     result.limiting = limiting;
+    // To compare is faster than to assign.
+    if (result.label_english !== entered.label_english) result.label_english = entered.label_english;
+    if (result.failed_step !== null || this.#failure !== NOT_FAILED) {
+      result.failed_clause = this.#failure.clause;
+      result.failed_atom = this.#failure.atom;
+      result.failed_step = this.#failure.step;
+    }
     return result;
   }
 
   /** Checks a signal, and returns its value as a number in its range. */
   #signal(index, signals) {
-    const names = SIGNALS.map((signal) => signal.name).filter((name) => signals[name] === undefined);
-    if (names.length > 0) throw this.#error(`no value for ${listed(names)}`);
     const { name, isBool, low, high } = SIGNALS[index];
     const given = signals[name];
+    if (given === undefined && isBool && this.#sparse) return 0;
+    const missing = SIGNALS.filter((signal) => signals[signal.name] === undefined && !(signal.isBool && this.#sparse));
+    if (missing.length > 0) throw this.#error(`no value for ${listed(missing.map((signal) => signal.name))}`);
     if (typeof given !== "number" && typeof given !== "boolean") {
       throw this.#error(`the signal \`${name}\` is not a number`);
     }
@@ -566,11 +615,15 @@ function parsed(text) {
 
 function print(steps, result, full) {
   if (steps === 1) {
-    process.stdout.write(`step,state,verdict,accepting,done,progress,reward${full ? ",robustness,limiting" : ""}\n`);
+    const more = full ? ",robustness,limiting,failed_clause,failed_atom,failed_step" : "";
+    process.stdout.write(`step,state,verdict,accepting,done,progress,reward${more}\n`);
   }
   const cells = [steps, result.state, result.verdict, result.accepting, result.done];
   cells.push(printed(result.progress), printed(result.reward));
-  if (full) cells.push(printed(result.robustness), quoted(result.limiting ?? ""));
+  if (full) {
+    const texts = [result.limiting, result.failed_clause, result.failed_atom, result.failed_step];
+    cells.push(printed(result.robustness), ...texts.map((text) => quoted(String(text ?? ""))));
+  }
   process.stdout.write(`${cells.join(",")}\n`);
 }
 

@@ -154,7 +154,7 @@ def test_an_episode_has_the_progress_and_rewards_of_the_paper() -> None:
         "label_english": "Keep alive throughout.",
         "failed_clause": None,
         "failed_atom": None,
-        "failed_step": None,
+        "failed_step": 0,
         "progress": 1.0,
         "success": True,
         "limiting": None,

@@ -76,7 +76,8 @@ class TltlEnv(gymnasium.Wrapper[Observation, Any, Any, Any], RecordConstructorAr
     ``info`` gains these keys, which replace entries of the environment with the same names:
 
     - ``verdict``, ``state``, ``label``, ``label_english``, ``progress``, ``failed_clause``,
-      ``failed_atom`` and ``failed_step``: as in :class:`~tltlc.monitor.Step`;
+      ``failed_atom`` and ``failed_step``: as in :class:`~tltlc.monitor.Step`, but ``failed_step`` is 0
+      while the trace has not failed;
     - ``unmet``: the state whose label says what was not met. After a violation it is the state before
       the step, otherwise the current state;
     - ``success``: whether the episode has ended in success;
@@ -157,7 +158,9 @@ class TltlEnv(gymnasium.Wrapper[Observation, Any, Any, Any], RecordConstructorAr
             "unmet": 0,
             "label": str(start.label),
             "label_english": label_text(self.task.fspa, 0),
-            **dict.fromkeys(("failed_clause", "failed_atom", "failed_step")),
+            "failed_clause": None,
+            "failed_atom": None,
+            "failed_step": 0,
             "progress": 0.0,
             "success": False,
             "limiting": None,
@@ -235,7 +238,8 @@ class TltlEnv(gymnasium.Wrapper[Observation, Any, Any, Any], RecordConstructorAr
             "label_english": step.label_english,
             "failed_clause": step.failed_clause,
             "failed_atom": step.failed_atom,
-            "failed_step": step.failed_step,
+            # Vector environments of Gymnasium put numbers into arrays of numbers, which have no None.
+            "failed_step": step.failed_step or 0,
             "progress": step.progress,
             "success": self._monitor.success,
             "limiting": step.limiting,
