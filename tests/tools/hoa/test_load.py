@@ -104,6 +104,8 @@ def _check_export_and_import(fspa: Fspa, example: Path) -> None:
     text = backends.emit("hoa", fspa)[f"{fspa.name}.hoa"]
     assert isinstance(text, str)
     reimported = import_text(text, read_source(example))
+    # The format knows no clauses.
+    fspa = replace(fspa, clauses=(), edges=tuple(replace(edge, broken=()) for edge in fspa.edges))
     # The file names comparisons without their units, so a label with a comparison can no longer be parsed as
     # a formula.
     if any("<" in atom.name or ">" in atom.name for atom in fspa.atoms):
