@@ -1,4 +1,4 @@
-"""The clause that a failing trace is told to break, against one automaton for each clause."""
+"""Compare the clause that is named for a failing trace with one automaton for each clause."""
 
 from __future__ import annotations
 

@@ -39,15 +39,15 @@ def with_broken_clauses(fspa: Fspa, spec: Spec, state_budget: int) -> Fspa:
     break it after each of these traces. If finding all of them takes too many steps, no clause is named.
     """
     clauses = tuple(part.text for part in spec.parts)
-    found: dict[int, tuple[BrokenClause, ...]]
+    broken: dict[int, tuple[BrokenClause, ...]]
     if len(clauses) == 1:
-        found = {index: (BrokenClause(0, edge.guard.primes),) for index, edge in _breaking_edges(fspa)}
+        broken = {index: (BrokenClause(0, edge.guard.primes),) for index, edge in _breaking_edges(fspa)}
     else:
         with recursion_room():
             most_states = max(_LEAST_STATES, _STATES_PER_STATE * len(fspa.states))
-            found = _Search(fspa, spec, min(state_budget, most_states)).found()
+            broken = _Search(fspa, spec, min(state_budget, most_states)).broken_clauses()
     edges = tuple(
-        replace(edge, broken=found[index]) if index in found else edge for index, edge in enumerate(fspa.edges)
+        replace(edge, broken=broken[index]) if index in broken else edge for index, edge in enumerate(fspa.edges)
     )
     return replace(fspa, clauses=clauses, edges=edges)
 
@@ -139,7 +139,7 @@ class _Search:
                 continue
         self._conditions: dict[tuple[int, int], int] = {}
 
-    def found(self) -> dict[int, tuple[BrokenClause, ...]]:
+    def broken_clauses(self) -> dict[int, tuple[BrokenClause, ...]]:
         """Return what the edges into traps break, by the index of the edge; nothing if the search is too long."""
         places = self._places()
         if places is None:
@@ -203,7 +203,7 @@ class _Search:
 
     def _after(self, place: _Place, primes: Sequence[Implicant]) -> Iterator[_Place]:
         """Yield the states of the clauses after the letters that satisfy one of ``primes``."""
-        found: set[Hashable] = set()
+        yielded: set[Hashable] = set()
         for prime in primes:
             polarity = dict(prime)
             nodes = tuple(automaton.transitions[state] for automaton, state in zip(self._automata, place, strict=True))
@@ -219,8 +219,8 @@ class _Search:
                 atom = min((atom for atom in atoms if atom != LEAF), default=LEAF)
                 if atom == LEAF:
                     after = self._targets(nodes)
-                    if after is not None and after not in found:
-                        found.add(after)
+                    if after is not None and after not in yielded:
+                        yielded.add(after)
                         yield after
                     continue
                 for holds in (True, False):

@@ -54,11 +54,8 @@ def causes(edge: Edge) -> tuple[Cause, ...]:
     First come the clauses in the order of the spec, then what only several clauses together rule out.
     """
     single = [Cause(broken.clause, prime) for broken in edge.broken for prime in broken.primes]
-    known = {cause.prime for cause in single}
     joint = [
-        Cause(None, prime)
-        for prime in edge.guard.primes
-        if prime not in known and not any(set(cause.prime) <= set(prime) for cause in single)
+        Cause(None, prime) for prime in edge.guard.primes if not any(set(cause.prime) <= set(prime) for cause in single)
     ]
     return (*single, *joint)
 

@@ -308,8 +308,8 @@ def _write(folder: Path, inputs: str, level: Level, result: JudgedCase) -> CaseR
     report = report_on(result)
     by_index = {episode.explained.summary.index: episode.recording for episode in result.episodes}
     successes = [episode.summary.index for episode in report.episodes if episode.summary.success]
-    told = (*report.explanation, *report.new_failures)
-    mentioned = [index for finding in told for index in finding.episodes[:_RECORDINGS]]
+    findings = (*report.explanation, *report.new_failures)
+    mentioned = [index for finding in findings for index in finding.episodes[:_RECORDINGS]]
     chosen = sorted({*mentioned, *successes[:1]})
     chosen += telling_episodes(level, result.episodes, chosen)
     file_names = {index: f"{index}{SUFFIX}" for index in sorted(chosen)}

@@ -87,7 +87,7 @@ def test_findings_say_what_they_are_about(level: StealthLevel, fspa: Fspa) -> No
         "no longer reaches `exit`: in 0 of 25 episodes; before: in 25 of 25 episodes; reaches `s1`, `s2` as before"
     )
     assert now[1].short == "dies in the north hall by `guard` in 25 of 25 episodes"
-    # What remained is told in words, and in symbols for the switch of the page.
+    # The report has what remained in words, and in symbols for the switch of the page.
     assert "Reach near(exit), and keep alive throughout" in now[2].text
     assert "◇near(exit)" in now[2].symbols and "Reach" not in now[2].symbols
     fewer = findings(level, fspa, deaths(fspa, 14), successes(fspa))

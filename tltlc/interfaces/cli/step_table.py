@@ -70,5 +70,5 @@ class StepTable:
 
 def flags(fspa: Fspa) -> frozenset[int]:
     """Return the atoms that are only -1 or 1, so that they are true or false and nothing between."""
-    found = Flags(fspa, schedule(fspa))
-    return frozenset(index for index, atom in enumerate(fspa.atoms) if AtomValue(atom.name) in found)
+    sharp = Flags(fspa, schedule(fspa))
+    return frozenset(index for index, atom in enumerate(fspa.atoms) if AtomValue(atom.name) in sharp)

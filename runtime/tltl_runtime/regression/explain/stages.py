@@ -138,8 +138,8 @@ def subgoal(fspa: Fspa, state: int) -> Subgoal:
     """Return the subgoal of a state: what the player must do to leave it towards acceptance.
 
     If several things do so, they are alternatives. If nothing is left to do, or if no edge leads
-    towards acceptance, the text of the subgoal is ``meets the spec``. If there are so many alternatives
-    that nobody reads them, the subgoal counts the steps of the spec that are left.
+    towards acceptance, the text of the subgoal is ``meets the spec``. If there are too many alternatives
+    to read, the subgoal counts the steps of the spec that are left.
     """
     ways = [_way(fspa, prime) for edge in monitors.tables(fspa).improving[state] for prime in edge.guard.primes]
     distinct = list(dict.fromkeys(way for way in ways if way is not None))

@@ -105,11 +105,11 @@ def _failing_traces(judged: JudgedTraces, new: Sequence[Finding]) -> tuple[str, 
     ``new``.
     """
     assert judged.judgement is not None
-    told = {index for finding in new for index in finding.episodes}
+    new_traces = {index for finding in new for index in finding.episodes}
     causes = [
         (index, cause)
         for index, verdict in enumerate(judged.now.verdicts)
-        if (cause := verdict.cause) is not None and (judged.judgement.verdict != "pass" or index in told)
+        if (cause := verdict.cause) is not None and (judged.judgement.verdict != "pass" or index in new_traces)
     ]
     first = {(cause.kind, cause.clauses): index for index, cause in reversed(causes)}
     causes.sort(key=lambda pair: pair[0] not in first.values())

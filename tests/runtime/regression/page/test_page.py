@@ -118,7 +118,7 @@ def test_a_new_failure_in_a_pass_is_marked() -> None:
     assert parsed.texts.count("new failure") == 2
     (first,) = re.findall(r'<ul class="reasons">\n<li class="new">(.*?)</li>', text)
     assert first.startswith("new failure: dies in 1 of 43 episodes") and "#navigation-v0/0/" in first
-    assert text.count("dies in 1 of 43 episodes") == 1, "it is told once"
+    assert text.count("dies in 1 of 43 episodes") == 1, "the page says it once"
     assert any("1 plays as before, with a new failure" in part for part in parsed.texts)
     assert not any("data-new-failure" in element for _, element in page().elements)
 

@@ -133,9 +133,9 @@ def _reasons(case: ReportedCase, slug: str) -> Iterator[_Reason]:
     for finding in new:
         text = new_failure_text(finding)
         yield _Reason(text, text, "new", _links(finding, case, slug))
-    told = {finding.short for finding in new if finding.short}
+    shown = {finding.short for finding in new if finding.short}
     for reason in report.ordered_reasons:
-        if reason.short in told:
+        if reason.short in shown:
             continue
         symbols = (reason.finding.symbols if reason.finding else "") or reason.text
         links = _links(reason.finding, case, slug) if reason.finding else None
