@@ -81,7 +81,7 @@ def test_retraining_reports_that_no_demonstration_was_found(
     assert f"hopeless, retrained: {hopeless['retrained']['text']}" == sentence
     assert hopeless["retrained"]["policy"] == "retrained/hopeless/policy.safetensors"
     (tests,) = ET.parse("report.xml").getroot()
-    assert [element.text for element in tests.iter("system-out")][-1] == hopeless["retrained"]["text"]
+    assert [element.text for element in tests.findall("testcase/system-out")][-1] == hopeless["retrained"]["text"]
     values = {element.get("name"): element.get("value") for element in tests.iter("property")}
     assert (values["hopeless.retrained"], values["hopeless.retrained_pass_rate"]) == ("no_way", "0.0000")
     page = Path("regression/game/report.html").read_text(encoding="utf-8")
