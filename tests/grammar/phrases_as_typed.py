@@ -7,7 +7,7 @@ from functools import cache
 from pathlib import Path
 from typing import Literal
 
-from tltlc import Fspa, compile_text
+from tltlc import Fspa, TltlError, compile_text
 from tltlc.core.record import record
 from tltlc.core.source import SourceFile
 from tltlc.diagnostics.diagnostic import Diagnostic
@@ -32,7 +32,8 @@ class Phrase:
     """A phrase as typed, the clauses that were meant, and their formula.
 
     ``also`` has other clauses that the phrase may mean; either reading is right. ``explain`` is what
-    ``tltlc explain`` says of the clauses that were meant.
+    ``tltlc explain`` says of the clauses that were meant. ``in_words``, in the phrases of the second
+    writer, is what was meant, in plain English, written together with the phrase.
     """
 
     source: str
@@ -41,7 +42,8 @@ class Phrase:
     meant: str
     formula: str
     explain: str = ""
-    also: str = ""
+    also: tuple[str, ...] = ()
+    in_words: str = ""
 
 
 @record
@@ -51,6 +53,7 @@ class Outcome:
     ``right``: it compiles as it stands to what is meant. ``helped``: it does after the fixes that are
     offered first. ``warned``: it ends as something else, but the linter says so. ``wrong``: it ends as
     something else, and nothing says so. ``not helped``: an error is left that offers no fix.
+    An automaton that is too large is such an error, too.
     """
 
     kind: Kind
@@ -61,7 +64,8 @@ class Outcome:
 def phrases() -> Iterator[Phrase]:
     for path in sorted(FOLDER.glob("*.toml")):
         for entry in parse_toml(SourceFile(path.name, path.read_text()), "TLT0001", "")["phrase"]:
-            yield Phrase(source=path.stem, **entry)
+            also = entry.pop("also", ())
+            yield Phrase(source=path.stem, also=(also,) if isinstance(also, str) else tuple(also), **entry)
 
 
 def prelude(name: str) -> str:
@@ -122,7 +126,11 @@ def outcome(phrase: Phrase) -> Outcome:
     text, left = fix(typed)
     if left:
         return Outcome("not helped", text, f"{left[0].title}; {left[0].help}")
-    readings = [spec_text(phrase, clauses) for clauses in (phrase.meant, phrase.also) if clauses]
+    try:
+        automaton(text)
+    except TltlError as error:
+        return Outcome("not helped", text, str(error))
+    readings = [spec_text(phrase, clauses) for clauses in (phrase.meant, *phrase.also)]
     if any(is_equivalent(text, reading) for reading in readings):
         return Outcome("right" if text == typed else "helped", text, sentence(text))
     new = warnings(text) - warnings(readings[0])
