@@ -106,13 +106,19 @@ def test_an_event_that_must_not_follow_itself_gets_both_readings(clause: str) ->
     "clause",
     [
         "keep a implies not a within 2 s",
-        "keep after a, not a within 2 s",
         "when a then not a within 2 s",
         "if a then not a within 2 s",
         "whenever a, not a within 2 s",
     ],
 )
-def test_an_event_that_must_not_hold_in_time_must_end_or_not_come_again(clause: str) -> None:
+def test_an_event_that_must_not_hold_in_time_must_end(clause: str) -> None:
+    (ends,) = suggestions(clause)
+    check(ends, ends_in_time)
+    assert "avoid (begins a) then within 2 s (begins a)" in (error_of(clause)[1].help or "")
+
+
+def test_an_event_that_must_not_hold_in_time_after_itself_must_end_or_not_come_again() -> None:
+    clause = "keep after a, not a within 2 s"
     assert error_of(clause)[1].fixes == ()
     ends, again = suggestions(clause)
     check(ends, ends_in_time)

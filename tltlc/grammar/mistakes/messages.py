@@ -48,7 +48,7 @@ from tltlc.grammar.mistakes.renaming import word_of_the_past
 from tltlc.grammar.mistakes.rephrasing import formula_stop, text_of
 from tltlc.grammar.mistakes.responses import colon_after_event, response_in_english
 from tltlc.grammar.mistakes.rules_in_words import rule_in_words
-from tltlc.grammar.mistakes.sentences.reading import sentence_help
+from tltlc.grammar.mistakes.sentences.reading import ReadAgain, sentence_help
 from tltlc.grammar.mistakes.unknown_signs import unknown_sign
 from tltlc.grammar.tables import load
 
@@ -71,6 +71,16 @@ def unexpected_token(
     ``tokens`` are one declaration, clause, line of a test or formula. The parser read them as the
     nonterminal ``start`` and raised ``error``.
     """
+    return _at_fix(_diagnostic(source, tokens, error, start, _diagnostic))
+
+
+def _diagnostic(
+    source: SourceFile,
+    tokens: Sequence[Token],
+    error: lalr.UnexpectedTokenError,
+    start: str,
+    read_again: ReadAgain | None = None,
+) -> Diagnostic:
     at = misread_index(tokens, error.index, start)
     failure = ParseFailure(source, tokens, error if at == error.index else stop_at(tokens, at, start), start)
     if failure.allowed_terminals == {"OF"}:
@@ -79,9 +89,9 @@ def unexpected_token(
     for rule in _RULES:
         diagnostic = rule(failure)
         if diagnostic:
-            return _at_fix(sentence_help(failure, diagnostic, is_explained=rule not in _OPEN_RULES))
+            return sentence_help(failure, diagnostic, is_explained=rule not in _OPEN_RULES, read_again=read_again)
     diagnostic = failure.error("TLT0101", failure.expectation(), failure.form())
-    return _at_fix(sentence_help(failure, diagnostic, is_explained=False))
+    return sentence_help(failure, diagnostic, is_explained=False, read_again=read_again)
 
 
 def _at_fix(diagnostic: Diagnostic) -> Diagnostic:

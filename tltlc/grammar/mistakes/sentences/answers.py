@@ -29,13 +29,17 @@ _BY_WORD: Final[tuple[tuple[tuple[Phrase, ...], Kind], ...]] = (
 )
 """Words before or after what is asked for, and the kind of answer that they make."""
 
+_STOPS: Final = phrases("stops", "stop", "ends", "is over", "must stop", "must end", "is interrupted", "is cancelled")
+_NEXT_STEP: Final = phrases("on the next step", "at the next step", "in the next step", "next step", "one step later")
+
 
 @record
 class Answer:
     """A condition that must hold: at the step of the event, within a time from it on, or in another way.
 
     ``time`` is the text of a time; "" for kinds without one. ``is_negative`` says that the condition is
-    the opposite of what the sentence names. ``keyword`` is `reach` or `keep` if it stands before the answer.
+    the opposite of what the sentence names, and ``is_open`` that it may have to hold at one step, or at all
+    of them. ``keyword`` is `reach` or `keep` if it stands before the answer.
     """
 
     kind: Kind
@@ -43,14 +47,22 @@ class Answer:
     time: str = ""
     is_negative: bool = False
     keyword: Literal["", "reach", "keep"] = ""
+    is_open: bool = False
 
 
 def answer_of(words: Words) -> Answer | None:
     """Return what words ask for, or None if it is unclear."""
     words = words.without([*SUBJECTS, (",",), ("then",)])
+    special = _until(words) or _stopped(words)
+    if special is not None:
+        return special
     if words.word(0) == "reach":
         return _reached(words[1:])
     is_kept = words.word(0) == "keep"
+    more = words.phrase(0, phrases("no more", "no further"))
+    if more and not words.find(WITHIN):
+        state = state_of(words[len(more) :])
+        return None if state is None else Answer("now", State(f"always {state.negated().at(ATOM)}"))
     prohibition = words.phrase(0, PROHIBITIONS)
     if prohibition:
         answer = _affirmative(words[len(prohibition) :])
@@ -58,13 +70,15 @@ def answer_of(words: Words) -> Answer | None:
     if words.word(0) == "not":
         answer = _affirmative(words[1:])
         # `not b within 5 s` may ask for one step without b, or for no step with it.
-        return None if answer is None or answer.kind not in ("now", "lasting") else _negated(answer)
+        if answer is None or answer.kind not in ("now", "lasting", "within"):
+            return None
+        return replace(_negated(answer) or answer, is_negative=False, is_open=answer.kind == "within")
     words = words.without([*MODALS, ("keep",)])
     modal = words.find(MODALS)
     if modal is not None and not words[modal[0] + len(modal[1]) :].phrase(0, NOT):
         words = words[: modal[0]].followed_by(words[modal[0] + len(modal[1]) :])
     answer = _affirmative(words)
-    if answer is not None and answer.kind == "within" and words.find([*NOT, *UNEQUAL]):
+    if answer is not None and answer.kind == "within" and _without_no_later(words).find([*NOT, *UNEQUAL]):
         return None
     return replace(answer, keyword="keep") if is_kept and answer is not None else answer
 
@@ -86,6 +100,41 @@ def clause_of(event: State, answer: Answer) -> str:
         "next": "next",
     }
     return f"keep {condition} implies {operators[answer.kind]} {state.at(ATOM)}"
+
+
+def _until(words: Words) -> Answer | None:
+    """Return the answer of `b until c`, as in the language, of `not b until c`, and of `b before c`: no c without b."""
+    found = words.find(phrases("until", "till", "before"))
+    if found is None or not found[0] or words.time(found[0] + 1):
+        return None
+    left, right = words[: found[0]].without([*MODALS, *COPULAS]), state_of(words[found[0] + 1 :])
+    forbidden = left.phrase(0, PROHIBITIONS)
+    if forbidden in (("avoid",), ("forbid",), ("prevent",)) or left.word(0) in ("keep", "reach"):
+        return None
+    state = state_of(left[len(forbidden) :])
+    if state is None or right is None:
+        return None
+    if found[1] == ("before",) and not forbidden:
+        return Answer("now", State(f"({right.negated().at(ATOM)} weak_until {state.at(ATOM)})"))
+    state = state.negated() if forbidden else state
+    operator = "weak_until" if state.text.startswith("not ") else "until"
+    return Answer("now", State(f"({state.at(ATOM)} {operator} {right.at(ATOM)})"))
+
+
+def _stopped(words: Words) -> Answer | None:
+    """Return the answer of `b stops` and `b on the next step`."""
+    for known, is_end in ((_STOPS, True), (_NEXT_STEP, False)):
+        found = words.find_last(known)
+        if found is not None and found[0] and found[0] + len(found[1]) == len(words):
+            state = state_of(words[: found[0]].without([*MODALS, *COPULAS]))
+            return None if state is None else Answer("next", state.negated() if is_end else state)
+    return None
+
+
+def _without_no_later(words: Words) -> Words:
+    """Return the words before `no later than`, whose `no` denies nothing that is asked for."""
+    found = words.find([phrase for phrase in WITHIN if "no" in phrase])
+    return words if found is None else words[: found[0]]
 
 
 def _reached(words: Words) -> Answer | None:

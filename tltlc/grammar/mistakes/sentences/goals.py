@@ -35,16 +35,23 @@ def goal_of(words: Words) -> Clauses | None:
         words = words[1:]
     verb = words.phrase(0, VERBS)
     parts = words[len(verb) :].split(SEQUENCE)
+    if words[len(verb) :].phrase(0, [*NOT, *PROHIBITIONS]) or (verb == ("buy",) and words.find([("with",)])):
+        return None
     if not verb and words.phrase(0, [*NOT, *PROHIBITIONS]):
         return None
     if not verb and not is_first and len(parts) < 2:
-        goal = _single(words) if words.find([*WITHIN, *FIRST_WITHIN]) else None
+        is_one = not words.find(
+            phrases("and")
+        )  # the time of two goals begins at the first of them, or at the first step
+        goal = single_goal(words) if is_one and words.find([*WITHIN, *FIRST_WITHIN]) else None
         return goal if goal is not None and goal[0].startswith("require eventually") else None
     goals = [_goal(part.without([*VERBS, (",",)])) for part in parts]
     if len(parts) > 1:
         known = [goal for goal in goals if goal is not None]
+        if any(COUNTED.intersection(goal.text.replace("(", " ").split()) for goal in known[1:]):
+            return None  # the count begins at the first step, not at the goal before
         return (f"reach {' then '.join(goal.at(OR) for goal in known)}",) if len(known) == len(goals) else None
-    return _single(parts[0])
+    return single_goal(parts[0])
 
 
 def _goal(words: Words) -> State | None:
@@ -63,15 +70,19 @@ def _goal(words: Words) -> State | None:
 
 
 def _all_of_a_number(words: Words) -> State | None:
-    """Return the goal of `all coins`: the number at the upper end of its range."""
+    """Return the goal of `all coins` and `all 10 coins`: the number, or the upper end of its range."""
     rest = words[1:].without(phrases("of", "the"))
     declared = rest.declared(0) if words.word(0) in ("all", "every") else None
+    number = rest.number(0) if words.word(0) in ("all", "every") and len(rest) == 2 else ""
+    counted = rest.declared(1) if number else None
+    if counted is not None and counted.type == "int":
+        return State(f"{rest[1].text} >= {number}")
     if declared is None or len(rest) != 1 or declared.type != "int" or not declared.ends:
         return None
     return State(f"{rest[0].text} == {declared.ends[1]}")
 
 
-def _single(words: Words) -> Clauses | None:
+def single_goal(words: Words) -> Clauses | None:
     """Return the clauses of one goal, perhaps with a time, or with what must hold there or all the time."""
     words = words.without(SUBJECTS)
     with_ = words.find([*phrases("with", "while having", "having")])

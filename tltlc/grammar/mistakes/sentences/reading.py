@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from typing import Final
 
 from tltlc.core.record import replace
@@ -9,34 +10,58 @@ from tltlc.core.source import SourceFile, Span
 from tltlc.diagnostics.diagnostic import Diagnostic, Edit, Fix, replacement_fix
 from tltlc.grammar import lalr, tree_checks
 from tltlc.grammar.builder import Builder
-from tltlc.grammar.lexer import END, tokenize
+from tltlc.grammar.lexer import END, Token, tokenize
 from tltlc.grammar.mistakes.clauses import is_own_line
 from tltlc.grammar.mistakes.declared_names import declared_names
 from tltlc.grammar.mistakes.parse_failure import ParseFailure
 from tltlc.grammar.mistakes.rephrasing import span_of
+from tltlc.grammar.mistakes.sentences.changes import CHANGES
 from tltlc.grammar.mistakes.sentences.goals import goal_of
+from tltlc.grammar.mistakes.sentences.names import is_imperative, with_names
+from tltlc.grammar.mistakes.sentences.requests import request_of
 from tltlc.grammar.mistakes.sentences.rules import Clauses, rule_of
-from tltlc.grammar.mistakes.sentences.states import state_of
+from tltlc.grammar.mistakes.sentences.states import AND, state_of
 from tltlc.grammar.mistakes.sentences.two_readings import both_readings
 from tltlc.grammar.mistakes.sentences.vocabulary import ENGLISH, FILLERS, NEVER, PROHIBITIONS, SUBJECTS
 from tltlc.grammar.mistakes.sentences.words import Words, phrases, words_of
 from tltlc.grammar.tables import load
 
 _JOINTS: Final = phrases("and", ",", ", and", "but", ", but", ";", ".", "without", "while")
+_RULES_BEHIND: Final = phrases(", never", ", no", ", without", "with")
+_CARRIED: Final = phrases("and bring it", "and carry it", "and bring them", "and take it")
+"""Words between a thing and the place at which it must be held."""
+_CLEAR: Final = phrases("infinitely often")
+"""Words of sentences whose help in the language would miss what is meant."""
 _HEADINGS: Final = ("scenario", "feature", "background", "example")
+_FORMS: Final = "begin with what must be: `reach a`, `keep a`, `avoid a`, `keep a implies b`"
 _LONGEST: Final = 60
 """The most tokens of a sentence; a longer clause is hardly one."""
+_LONGEST_CHECKED: Final = 500
+"""Fewer tokens than these are read again with the fix of their error."""
 _KEYWORDS: Final = ("reach", "keep", "avoid", "require", "limit")
 
 
-def sentence_help(failure: ParseFailure, diagnostic: Diagnostic, *, is_explained: bool) -> Diagnostic:
+ReadAgain = Callable[[SourceFile, Sequence[Token], lalr.UnexpectedTokenError, str], Diagnostic]
+"""Returns the error for a piece of a text, as :func:`~tltlc.grammar.mistakes.messages.unexpected_token` does."""
+
+
+def sentence_help(
+    failure: ParseFailure, diagnostic: Diagnostic, *, is_explained: bool, read_again: ReadAgain | None
+) -> Diagnostic:
     """Return the error for a clause with the fix that its English sentence suggests, if it has one reading.
 
     The error stays as it is if its fix leaves no error, or if the sentence is unclear. ``is_explained``
     says that the error is about a mistake in a clause of the language: then its help stays, too.
     """
-    if failure.start != "clause" or failure.tokens[-1].type != END or len(failure.tokens) > _LONGEST:
+    if failure.start != "clause" or failure.tokens[-1].type != END:
         return diagnostic
+    if len(failure.tokens) > _LONGEST:
+        is_end = (
+            len(failure.tokens) < _LONGEST_CHECKED
+            and diagnostic.fixes
+            and not _leads_on(failure, diagnostic.fixes[0], read_again)
+        )
+        return replace(diagnostic, fixes=()) if is_end else diagnostic
     if failure.tokens[0].text.lower() in _HEADINGS and failure.tokens[1].text == ":":
         at = Span(failure.tokens[0].start, failure.tokens[0].start)
         fix = Fix("Write `//` before it", (Edit(at, "// "),))
@@ -45,14 +70,25 @@ def sentence_help(failure: ParseFailure, diagnostic: Diagnostic, *, is_explained
     if words.word(0) == "require" or not (failure.tokens[0].text in _KEYWORDS or is_own_line(failure)):
         return diagnostic
     if not words.find(FILLERS):
-        if diagnostic.fixes and _is_mended(failure, diagnostic.fixes[0]):
+        is_spelt = with_names(words).text != words.text and _read(words) is not None
+        if diagnostic.fixes and _is_mended(failure, diagnostic.fixes[0]) and not is_spelt:
             return diagnostic
         if not diagnostic.fixes and failure.tokens[0].text in _KEYWORDS and is_explained:
-            return diagnostic
-    clauses = _sentence(words) if words else None
+            is_spelt = with_names(words).text != words.text
+            is_clear = (
+                is_spelt
+                or words.find(_CLEAR)
+                or _is_change(words)
+                or (words.word(0) == "reach" and words.find(_RULES_BEHIND))
+            )
+            if not is_clear and not _is_quoted(_read(words), diagnostic.help or ""):
+                return diagnostic
+    clauses = _read(words) if words else None
+    if clauses is None and diagnostic.fixes and not _leads_on(failure, diagnostic.fixes[0], read_again):
+        diagnostic = replace(diagnostic, help=diagnostic.help or _FORMS, fixes=())
     span = span_of(failure.tokens[:-1])
     if clauses is None and not diagnostic.fixes and failure.tokens[0].text not in _KEYWORDS:
-        return replace(diagnostic, help=both_readings(words) or diagnostic.help)
+        return replace(diagnostic, help=both_readings(words) or both_readings(with_names(words)) or diagnostic.help)
     if clauses is None or "//" in failure.source.slice(span):
         return diagnostic
     text = " ".join(clauses)
@@ -61,10 +97,58 @@ def sentence_help(failure: ParseFailure, diagnostic: Diagnostic, *, is_explained
     if failure.lacks_fixed_clock(text) or not _is_valid(clauses):
         return diagnostic
     quoted = " and ".join(f"`{clause}`" for clause in clauses)
+    has_both = diagnostic.help is not None and quoted in diagnostic.help
     indent = failure.source.text[: span.start].rpartition("\n")[2]
     separator = f"\n{indent}" if not indent.strip() else " "
     fix = replacement_fix(failure.source, span, separator.join(clauses))
-    return replace(diagnostic, help=f"write {quoted}", fixes=(replace(fix, title=f"Write {quoted}"),))
+    return replace(
+        diagnostic,
+        help=diagnostic.help if has_both else f"write {quoted}",
+        fixes=(replace(fix, title=f"Write {quoted}"),),
+    )
+
+
+def _leads_on(failure: ParseFailure, fix: Fix, read_again: ReadAgain | None, rounds: int = 2) -> bool:
+    """Whether a fix of a piece, and the fixes of what is left, lead to a text without a syntax error.
+
+    Without ``read_again``, the piece is one that is read again itself; then the answer is true.
+    """
+    if read_again is None or _is_mended(failure, fix):
+        return True
+    piece, source = span_of(failure.tokens[:-1]), failure.source
+    text, end = "", 0
+    for edit in sorted(fix.edits, key=lambda edit: edit.span.start):
+        text += source.text[end : edit.span.start] + edit.text
+        end = edit.span.end
+    changed = SourceFile(source.name, text + source.text[end:], "text")
+    stop = piece.end + len(changed.text) - len(source.text)
+    tokens = [token for token in tokenize(changed.text).tokens if piece.start <= token.start and token.end <= stop]
+    tokens = [token for token in tokens if token.type != END]
+    tokens.append(Token(END, "", stop, stop))
+    try:
+        lalr.run(load(), failure.start, tokens, Builder(changed, {}))
+    except lalr.UnexpectedTokenError as error:
+        following = read_again(changed, tokens, error, failure.start)
+        if not following.fixes or not rounds:
+            return False
+        again = ParseFailure(changed, tokens, error, failure.start)
+        return _leads_on(again, following.fixes[0], read_again, rounds - 1)
+    return True
+
+
+def _is_quoted(clauses: Clauses | None, help_: str) -> bool:
+    """Whether a help names what ends, in time, a condition that is the only clause of a sentence."""
+    if clauses is None or len(clauses) > 1 or " implies eventually within " not in clauses[0]:
+        return False
+    return any(clauses[0].endswith(text) for text in help_.split("`")[1::2] if " not " in text)
+
+
+def _is_change(words: Words) -> bool:
+    """Whether a sentence says how a number changes, and not by how much or to what value."""
+    found = words.find(CHANGES)
+    following = "" if found is None else words.word(found[0] + len(found[1]))
+    stop = 0 if found is None else found[0] + len(found[1])
+    return found is not None and (stop == len(words) or following in ("while", "during", "when", "if"))
 
 
 def _is_mended(failure: ParseFailure, fix: Fix) -> bool:
@@ -97,10 +181,32 @@ def _words(failure: ParseFailure) -> Words:
 def _without_label(words: Words) -> Words:
     """Return the words after a label such as `bonus:`, if a clause follows."""
     found = words.find([(":",)])
-    if found is None or words.word(0) in ("if", "when", "whenever", "while", "after", "once", "all", "any"):
+    if found is None:
         return words
+    is_condition = words.word(0) in ("if", "when", "whenever", "while", "after", "once", "all", "any")
+    is_label = not any(word.is_name for word in words[: found[0]])
     rest = words[found[0] + 1 :]
-    return rest if rest.word(0) in _KEYWORDS else words
+    return rest if is_label or (rest.word(0) in _KEYWORDS and not is_condition) else words
+
+
+def _read(words: Words) -> Clauses | None:
+    """Return the clauses of a sentence, first with its words as they are, then with the names that they spell."""
+    clauses = _sentence(words)
+    return clauses if clauses is not None else _request(words)
+
+
+def _request(words: Words) -> Clauses | None:
+    named = with_names(words)
+    if words.find(_CARRIED):
+        states = [state_of(part) for part in named.split(phrases("and"))]
+        held = [state.at(AND) for state in states if state is not None]
+        return (f"reach {' and '.join(held)}",) if len(held) == len(states) == 2 else None
+    is_verb = is_imperative(words) and words.word(0) not in _KEYWORDS
+    for known in (words, named) if named.text != words.text else (words,):
+        clauses = (_sentence(known) if known is not words else None) or request_of(known, is_imperative=is_verb)
+        if clauses is not None:
+            return clauses
+    return None
 
 
 def _sentence(words: Words) -> Clauses | None:

@@ -6,6 +6,7 @@ from typing import Final
 
 from tltlc.core.record import replace
 from tltlc.grammar.mistakes.sentences.answers import Answer, answer_of, clause_of
+from tltlc.grammar.mistakes.sentences.spans import span_rule_of
 from tltlc.grammar.mistakes.sentences.states import (
     ATOM,
     OR,
@@ -40,13 +41,16 @@ from tltlc.grammar.mistakes.sentences.words import Words, phrases
 Clauses = tuple[str, ...]
 COUNTED: Final = frozenset(("times", "time_since", "time_holding"))
 """The functions whose values depend on all steps before."""
+_BECOMES: Final = phrases("becomes", "turns", "changes to", "turns to", "starts", "begins", "goes to", "switches to")
 _LASTING: Final = phrases("while", "during", "as long as", "so long as", "for as long as")
 """Words before a condition that may have to hold until a goal is reached."""
+_EITHER: Final = phrases("while", "during")
+"""Words between an event and a condition that may say a goal, or a rule."""
 
 
 def rule_of(words: Words) -> Clauses | None:
     """Return the clauses for a rule in English, or None if the words are no rule, or it is unclear which."""
-    for read in (_scenario, _implication, _condition_first, _condition_last, _unconditional):
+    for read in (span_rule_of, _scenario, _implication, _condition_first, _condition_last, _unconditional):
         clauses = read(words)
         if clauses is not None:
             return clauses
@@ -55,6 +59,10 @@ def rule_of(words: Words) -> Clauses | None:
 
 def condition_of(words: Words) -> State | None:
     """Return the condition of a rule, which may last or be counted, too: `aiming for 1 s`, `died 3 times`."""
+    becomes = words.find(_BECOMES)
+    if becomes is not None and becomes[0]:
+        state = state_of(words[: becomes[0]].followed_by(words[becomes[0] + len(becomes[1]) :].without([("true",)])))
+        return None if state is None or state.level > ATOM else State(f"begins {state.text}")
     holding = holding_of(words)
     if holding is not None:
         held = State(f"time_holding({holding[0].text}) {holding[1] or '>='} {holding[2]}")
@@ -75,17 +83,26 @@ def _scenario(words: Words) -> Clauses | None:
     """Return the rule of a scenario: `given a when b then c`."""
     if words.word(0) != "given":
         return None
-    found = words.find(phrases("when"))
-    if found is None:
+    found, then = words.find(phrases("when")), words.find(phrases("then"))
+    if then is None or (found is not None and found[0] > then[0]):
         return None
-    then = words.find(phrases("then"), found[0])
-    if then is None:
-        return None
-    given, when = (condition_of(part) for part in (_steps(words[1 : found[0]]), _steps(words[found[0] + 1 : then[0]])))
-    answer = answer_of(_steps(words[then[0] + 1 :]))
-    if given is None or when is None or answer is None:
-        return None
-    return _answered(joined([given, when], "and"), answer, is_from_then=False)
+    steps = [words[1 : then[0]]] if found is None else [words[1 : found[0]], words[found[0] + 1 : then[0]]]
+    states = [condition_of(_steps(step)) for step in steps]
+    known = [state for state in states if state is not None]
+    return _answered_by(joined(known, "and"), words[then[0] + 1 :]) if known and len(known) == len(states) else None
+
+
+def _answered_by(event: State, words: Words) -> Clauses | None:
+    """Return the rule that asks for an answer on the same step, perhaps with `unless c` behind it."""
+    words = _steps(words)
+    unless = words.find(UNLESS)
+    if unless is not None and unless[0]:
+        exception = condition_of(words[unless[0] + len(unless[1]) :])
+        if exception is None:
+            return None
+        event, words = joined([event, exception.negated()], "and"), words[: unless[0]]
+    answer = answer_of(words)
+    return None if answer is None else _answered(event, answer, is_from_then=False)
 
 
 def _steps(words: Words) -> Words:
@@ -108,6 +125,10 @@ def _condition_first(words: Words) -> Clauses | None:
         return _unless_first(words)
     for start, stop in _borders(words, len(phrase)):
         event, answer = condition_of(words[len(phrase) : start]), answer_of(words[stop:])
+        if phrase == ("if",) and words[stop:].find(UNTIL):
+            return None  # the rule may end there, or what it asks for
+        if event is not None and phrase in SAME_STEP and words[stop:].find(UNLESS):
+            return _answered_by(event, words[stop:])
         if event is None or answer is None or (answer.keyword == "reach" and phrase in _LASTING):
             continue
         if answer.keyword == "keep" and answer.kind not in ("now", "lasting", "always"):
@@ -134,17 +155,24 @@ def _borders(words: Words, first: int) -> list[tuple[int, int]]:
     keyword = words.find(phrases("reach", "keep", "avoid"), first + 1)
     if keyword is not None:
         return [(keyword[0], keyword[0])]
-    after_name = next((at + 1 for at in range(first, len(words)) if words[at].is_name), len(words))
-    if after_name < len(words) and words[after_name].text == "(":
-        after_name = next((at + 1 for at in range(after_name, len(words)) if words[at].text == ")"), len(words))
-    return [(after_name, after_name)] if after_name < len(words) else []
+    ends = range(first + 1, len(words))
+    known = [at for at in ends if condition_of(words[first:at]) is not None and answer_of(words[at:]) is not None]
+    return [(known[0], known[0])] if len(known) == 1 else []
 
 
 def _answered(event: State, answer: Answer, *, is_from_then: bool) -> Clauses | None:
     """Return the rule that asks for an answer, if the kind of the condition leaves one reading."""
     is_reached = answer.keyword == "reach"
-    if answer.state == event or (answer.state == event.negated() and not is_reached):
+    conditions = event.text.split(" and ")
+    is_ending = answer.state.negated().text in conditions
+    if answer.kind == "lasting" and answer.state == event:
+        return (f"keep begins {event.at(ATOM)} implies always for {answer.time} {answer.state.at(ATOM)}",)
+    if answer.state == event or (is_ending and not is_reached and answer.kind not in ("within", "next")):
         return None  # an event that answers itself begins again
+    if answer.is_open and not is_ending:
+        return None  # `not b within 5 s` may ask for one step without b, or for no step with it
+    if is_ending and answer.kind == "within":
+        return (f"keep {event.at(OR)} implies eventually within {answer.time} {answer.state.at(ATOM)}",)
     if is_reached and answer.kind == "eventually" and is_from_then:
         return None  # each event needs an answer, or both are goals
     if answer.keyword == "keep" and answer.kind == "now":
@@ -168,6 +196,7 @@ def _condition_last(words: Words) -> Clauses | None:
         (phrases("iff", "if and only if", "exactly when", "exactly if"), _exactly_when),
         (UNTIL, _until),
         ((*SAME_STEP, *FROM_THEN, ("of",)), _whenever),
+        (phrases("on", "at", "in"), _never_at),
     ):
         found = words.find_last(known)
         if found is None or not found[0] or words.time(found[0] + len(found[1])):
@@ -229,9 +258,17 @@ def _whenever(left: Words, right: State, phrase: tuple[str, ...]) -> Clauses | N
     if left.word(0) in ("reach", "avoid", "require"):
         return None
     found = answer_of(left)
+    if phrase in _EITHER and is_event(left):
+        return None  # a goal, or a rule
     if found is None or (phrase == ("of",) and found.kind != "within"):
         return None
     return _answered(right, found, is_from_then=is_from_then)
+
+
+def _never_at(left: Words, right: State, phrase: tuple[str, ...]) -> Clauses | None:
+    """Return the rule of `no a on lap 5`."""
+    prohibited = _prohibited(left)
+    return None if prohibited is None else _answered(right, Answer("now", prohibited.negated()), is_from_then=False)
 
 
 def _prohibited(words: Words) -> State | None:
@@ -256,7 +293,7 @@ def _prohibited(words: Words) -> State | None:
     verb = rest.phrase(0, [*COPULAS, *AT_ONCE, *phrases("occur", "be allowed", "be true", "allowed", "permitted")])
     if found[1] == ("no",):
         return None
-    if len(verb) == len(rest):
+    if len(verb) == len(rest) or rest.without([*COPULAS, ("occur",)]).text in map(" ".join, AT_ONCE):
         return state_of(words[: found[0]])
     # `health never drops below 20`: the comparison after `never` is what is forbidden.
     left = words[: found[0]].without([*SUBJECTS, ("keep",)])

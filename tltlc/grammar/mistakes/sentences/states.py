@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 from typing import Final
 
 from tltlc.core.record import record
+from tltlc.grammar.mistakes.sentences.changes import change_of, loss_of
 from tltlc.grammar.mistakes.sentences.vocabulary import (
     AT_ONCE,
     COMPARISONS,
@@ -25,12 +26,6 @@ _SIGNS: Final = {"LESS": "<", "AT_MOST": "<=", "MORE": ">", "AT_LEAST": ">=", "E
 _PAST: Final = ("once", "historically", "previously", "begins", "ends")
 _NUMERIC: Final = ("number", "int", "ratio", "length", "time", "speed", "angle")
 _TIMES: Final = phrases("times", "time", "x")
-_CHANGES: Final = {
-    **dict.fromkeys(("decreases", "drops", "falls", "shrinks", "decrease", "drop", "fall"), "<"),
-    **dict.fromkeys(("increases", "rises", "grows", "increase", "rise", "grow"), ">"),
-    **dict.fromkeys(("changes", "change"), "!="),
-}
-"""Maps verbs for a change from one step to the next to the sign of the comparison with the value before."""
 _COUNTED: Final = (*COMPARISONS, ("exactly",), ("once",), ("twice",), ("thrice",))
 _OFTEN: Final = {"once": "1", "twice": "2", "thrice": "3"}
 
@@ -222,6 +217,8 @@ def _of_number(words: Words) -> State | None:
         number = words.number(len(phrase))
         relation = COMPARISONS.get(phrase, "==" if phrase else ">=")
         return _comparison(words[-1].text, relation, number) if number else None
+    if len(words) == 2 and is_value(words[1:]) and _is_number(words, 1) and (lost := loss_of(words)):
+        return _comparison(words[1].text, lost, f"previous({words[1].text})")
     if not _is_number(words, 0):
         return None
     end = call_end(words, 0)
@@ -233,14 +230,32 @@ def _of_number(words: Words) -> State | None:
             return _comparison(value, COMPARISONS[phrase], rest[start + len(phrase) :].text)
     declared = words.declared(0)
     kind = "" if declared is None else declared.type
-    change = _CHANGES.get(rest.word(0), "") if len(rest) == 1 else ""
-    if change and (change != "!=" or kind == "int"):
-        return _comparison(value, change, f"previous({value})")
+    if declared is not None and (full := _full(rest, declared.ends)):
+        return _comparison(value, ">=", full)
+    change = change_of(value, kind, rest)
+    if change is not None:
+        text, relation = change
+        return (
+            _comparison(value, relation, f"previous({value})")
+            if relation in NEGATED_SIGN
+            else State(text, AND * (relation == "and"))
+        )
     unequal, equal = rest.phrase(0, UNEQUAL), rest.phrase(0, EQUALITIES)
     phrase = unequal if len(unequal) >= len(equal) else equal
+    ends = () if declared is None or kind == "int" or phrase == unequal else declared.ends
+    if ends and phrase and rest[len(phrase) :].text in ends:
+        return _comparison(value, ">=" if rest[len(phrase) :].text == ends[1] else "<=", rest[len(phrase) :].text)
     if kind == "int" and len(rest) == len(phrase) + 1 and (number := rest.number(len(phrase))):
         return _comparison(value, "!=" if phrase and phrase == unequal else "==", number)
     return None
+
+
+def _full(words: Words, ends: tuple[str, ...]) -> str:
+    """Return the upper end of a range for `maxed out`, perhaps with the number behind it; else ""."""
+    phrase = words.phrase(0, phrases("maxed out", "maxed", "is maxed out", "is full", "at max", "at maximum", "is max"))
+    rest = words[len(phrase) :]
+    is_same = not rest or (len(ends) == 2 and rest.text in (ends[1], f"({ends[1]})"))
+    return ends[1] if phrase and is_same and len(ends) == 2 else ""
 
 
 def _of_bool(words: Words) -> State | None:
@@ -268,6 +283,9 @@ def _of_enum(words: Words) -> State | None:
         return None
     end = call_end(words, 0)
     rest = words[end:]
+    ordered = _in_order(words[:end].text, rest, declared.values)
+    if ordered is not None:
+        return ordered
     unequal, equal = rest.phrase(0, UNEQUAL), rest.phrase(0, EQUALITIES)
     phrase = unequal if len(unequal) >= len(equal) else equal
     value = rest[len(phrase) :].without(phrases("in", "on", "at", "be", "to"))
@@ -276,6 +294,16 @@ def _of_enum(words: Words) -> State | None:
     signs = ("is", "is not") if not phrase or phrase != unequal else ("is not", "is")
     text, opposite = (f"{words[:end].text} {sign} {value[0].text}" for sign in signs)
     return State(text, ATOM, opposite)
+
+
+def _in_order(name: str, words: Words, values: tuple[str, ...]) -> State | None:
+    """Return the condition of `mode >= alert`: one of the values of an enum, in the order of their declaration."""
+    sign = _SIGNS.get(words[0].type, "") if len(words) == 2 else ""
+    if sign not in ("<", "<=", ">", ">=") or words[1].text not in values:
+        return None
+    at = values.index(words[1].text) + (sign in ("<=", ">"))
+    listed = values[at:] if sign in (">", ">=") else values[:at]
+    return joined([State(f"{name} is {value}") for value in listed], "or") if 0 < len(listed) < len(values) else None
 
 
 def _of_group(words: Words) -> State | None:

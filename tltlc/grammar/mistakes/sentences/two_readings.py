@@ -44,6 +44,14 @@ _AFTER: Final = (
 )
 _SMALL: Final = "write `keep {a}` if it must hold at every step, `reach {a}` if one step with it is enough"
 _KEYWORDS: Final = phrases("reach", "keep", "avoid")
+_WHILE: Final = (
+    "write `reach {a} and {b}` if it is a goal, `keep {b} implies {a}` if it is a rule for each step with `{b}`"
+)
+_BOTH: Final = "write `reach {a} and {b}` for both at the same step, `reach {a} then {b}` for one after the other"
+_FOLLOWED: Final = (
+    "write `keep {a} implies eventually within {time} {b}` if it must follow each time, "
+    "`reach {a} then within {time} {b}` if both are goals"
+)
 _UNTIL: Final = "write `require {a} until {b}` if `{b}` must come, `require {a} weak_until {b}` if it need not"
 
 
@@ -53,7 +61,10 @@ def both_readings(words: Words) -> str | None:
     first = words.phrase(0, FROM_THEN)
     if first:
         return _after(words, first)
+    if (goals := _goals(words)) is not None:
+        return goals
     for known, form in (
+        (phrases("while", "during"), _WHILE),
         (_NEEDS, _NEEDED),
         (phrases("before"), _BEFORE),
         (FROM_THEN, _FROM_THEN),
@@ -68,6 +79,21 @@ def both_readings(words: Words) -> str | None:
             left = left[: modal[0]].followed_by(left[modal[0] + len(modal[1]) :].without(COPULAS))
         return _help(form, state_of(left), state_of(right))
     return _small_goal(words) or _counted_in_time(words) or _unknown_value(words) or _state_alone(words)
+
+
+def _goals(words: Words) -> str | None:
+    """Return the help for two goals that `and` or a comma joins, perhaps with a time: `seen, then hidden in 10 s`."""
+    found = words.find(phrases("and", ",", ", then", ", and", "then"))
+    if found is None or not found[0]:
+        return None
+    a, rest = state_of(words[: found[0]].without(VERBS)), words[found[0] + len(found[1]) :]
+    last = rest.find_last(WITHIN)
+    time = None if last is None else rest.time(last[0] + len(last[1]))
+    if last is not None and time is not None and time[1] == len(rest) and found[1] != (",",):
+        b = state_of(rest[: last[0]].without(VERBS))
+        readings = _help(_FOLLOWED.replace("{time}", time[0].text), a, b)
+        return readings if "then" in found[1] else None
+    return _help(_BOTH, a, state_of(rest.without(VERBS))) if "then" not in found[1] else None
 
 
 def _after(words: Words, first: Phrase) -> str | None:

@@ -65,7 +65,7 @@ COMPARISONS: Final[Mapping[Phrase, str]] = {
             "at most", "no more than", "not more than", "up to", "maximum", "max", "maximum of", "not above",
             "less than or equal to", "not exceed",
             "no higher than", "never above", "never over", "never exceeds", "no longer than", "not longer than",
-            "a maximum of", "never more than",
+            "a maximum of", "never more than", "never longer than", "never for longer than", "never for more than",
         ),
         "<=",
     ),

@@ -40,7 +40,7 @@ Phrase = tuple[str, ...]
 class Word:
     """A word, name, number or sign. English words are in lower case; ``type`` is the terminal of the first token.
 
-    ``start`` and ``end`` are a range of characters of the text.
+    ``start`` and ``end`` are a range of characters of the text. A word that ``is_renamed`` is spelt otherwise there.
     """
 
     text: str
@@ -48,6 +48,7 @@ class Word:
     is_name: bool
     start: int
     end: int
+    is_renamed: bool = False
 
 
 class Words(Sequence[Word]):
@@ -77,13 +78,19 @@ class Words(Sequence[Word]):
         """The text of the words on one line, as it stands in the source."""
         if not self._words:
             return ""
-        pieces, start = [], self._words[0].start
+        pieces = [self._spelling(self._words[0])]
         for word, following in pairwise(self._words):
-            if self._source.text[word.end : following.start].strip():  # words between them were left out
-                pieces.append(self._source.text[start : word.end])
-                start = following.start
-        pieces.append(self._source.text[start : self._words[-1].end])
-        return " ".join(" ".join(pieces).split())
+            is_close = word.end == following.start and not word.is_renamed and not following.is_renamed
+            pieces.append("" if is_close else " ")
+            pieces.append(self._spelling(following))
+        return " ".join("".join(pieces).split())
+
+    def of(self, words: Sequence[Word]) -> Words:
+        """Return other words of the same text."""
+        return Words(self._source, self.names, tuple(words))
+
+    def _spelling(self, word: Word) -> str:
+        return word.text if word.is_renamed else self._source.text[word.start : word.end]
 
     def word(self, at: int) -> str:
         """Return the English word at an index; "" for a name, and outside the sentence."""
