@@ -63,7 +63,11 @@ SYNONYMS: Final[dict[str, dict[str, str]]] = {
         "goal": "spec",
         "plan": "spec",
         "from": "import",
-        **dict.fromkeys(("bool", "boolean", "int", "float", "number"), "signal"),
+        **dict.fromkeys(("bool", "boolean", "int", "integer", "float", "double", "number", "enum"), "signal"),
+        **dict.fromkeys(("signals", "flag", "sensor", "event"), "signal"),
+        "entities": "entity",
+        **dict.fromkeys(("rate", "fps", "dt", "timestep", "framerate", "tickrate"), "clock"),
+        **dict.fromkeys(("rule", "property", "specification", "objective", "quest", "mission"), "spec"),
     },
     "clause": {
         "goal": "reach",

@@ -14,6 +14,9 @@ from typing import Final
 from tltlc.core.source import SourceFile
 from tltlc.grammar.keywords import CLAUSES, DECLARATIONS, SYNONYMS, TEST_ITEMS, closest_word
 from tltlc.grammar.lexer import BAD, Token
+from tltlc.grammar.mistakes.declaration_forms.clocks import CLOCK_WORDS
+from tltlc.grammar.mistakes.declaration_forms.heads import SPEC_WORDS
+from tltlc.grammar.mistakes.declaration_forms.signals import ENTITY_WORDS, SIGNAL_WORDS, TYPE_WORDS
 from tltlc.grammar.tables import load
 
 _ENDS: Final = {"NAME", "NUMBER", "UNIT", "STRING", "TRUE", "FALSE", "RPAR", "RSQB", "RBRACE", "LBRACE", "LIMIT"}
@@ -40,6 +43,8 @@ _OPENING_WORDS: Final = frozenset(
 _SCENARIO: Final = ("given", "when")
 _STEPS: Final = ("then", "and", "but")
 """Words that begin the lines of a scenario."""
+_SEPARATORS: Final = (";", ",")
+"""Marks that other languages write after a declaration."""
 _OTHERS: Final = DECLARATIONS.keys() - {"spec", "test"}
 
 
@@ -136,6 +141,8 @@ def _begins_piece(
         if token.type == "LIMIT" and _is_behind_number(source, tokens, index):
             return False
         return first or (within_lines and before.type in _ENDS)
+    if keywords is DECLARATIONS and first and within_lines and _is_declared(tokens, index):
+        return True
     if keywords is CLAUSES and first and before.type in _ENDS - {"LIMIT"} and token.type in _PREFIXES:
         return True
     if first and _is_list_mark(source, tokens, index, keywords):
@@ -153,6 +160,25 @@ def _begins_piece(
     if following.type not in _STARTS or following.text in load().soft or is_first_on_line(source, tokens, index + 1):
         return False
     return before.type in _ENDS or closest_word(token.text, tuple(keywords)) is not None
+
+
+def _is_declared(tokens: Sequence[Token], index: int) -> bool:
+    """Whether a line begins with a declaration in another form: ``dt = 0.1``, ``seen: bool``, ``int lap``, ``bool a;``.
+
+    ``index`` is that of its first token.
+    """
+    word, before, after = tokens[index].text.lower(), tokens[index - 1], tokens[index + 1 : index + 3]
+    if tokens[index].type != "NAME" or not after or (before.type not in _ENDS and before.text not in _SEPARATORS):
+        return False
+    if word in CLOCK_WORDS:
+        return after[0].text in ("=", ":") or after[0].type == "NUMBER"
+    if word in SPEC_WORDS:
+        return after[0].type in ("NAME", "STRING") or after[0].text in ("{", ":")
+    if after[0].text in (":", "=") and word in SIGNAL_WORDS | ENTITY_WORDS:
+        return after[0].text == ":"
+    if after[0].text == ":":
+        return after[1:] != [] and after[1].text.lower() in TYPE_WORDS
+    return after[0].type == "NAME" and word in SIGNAL_WORDS | ENTITY_WORDS | TYPE_WORDS | {"enum"}
 
 
 def _is_like_keyword(word: str, keywords: dict[str, str]) -> bool:

@@ -15,6 +15,13 @@ from tltlc.grammar.builder import Builder
 from tltlc.grammar.keywords import CLAUSES, TEST_ITEMS
 from tltlc.grammar.lexer import END, Token, Tokens
 from tltlc.grammar.mistakes import messages
+from tltlc.grammar.mistakes.declaration_forms.heads import SpecHead, read_head
+from tltlc.grammar.mistakes.declaration_forms.reading import (
+    declaration_error,
+    head_error,
+    meant_declaration,
+    tokens_as_meant,
+)
 from tltlc.grammar.mistakes.fragments import block_kind, declarations, is_first_on_line, lines
 from tltlc.grammar.tables import load
 
@@ -40,6 +47,7 @@ class _Reader:
         self.diagnostics: list[Diagnostic] = []
         self._source = source
         self._docs = lexed.docs
+        self._tokens = lexed.tokens
 
     def read_declaration(self, piece: list[Token]) -> None:
         """Parse the tokens of one declaration, and add the declaration and its errors to the results.
@@ -47,20 +55,41 @@ class _Reader:
         If only some clauses of a spec, or lines of a test, are broken, keep the others.
         """
         before = len(self.diagnostics)
+        head = read_head(piece)
+        if head:
+            self.diagnostics.append(head_error(self._source, piece, head))
+            piece = _with_head(piece, head)
         kind = block_kind(piece)
+        declarations: list[tree.Declaration | None] = []
         if kind:
-            declaration = self._read_block(piece, kind)
+            declarations = [self._read_block(piece, kind)]
         else:
-            declaration = None if self._refuse_deep(piece) else self._read("declaration", piece)
-        if declaration is None:
-            return
-        kept, errors = nesting.drop_deep_declarations(self._source, [declaration])
+            declarations += () if self._refuse_deep(piece) else self._read_one(piece, is_refused=head is not None)
+        kept, errors = nesting.drop_deep_declarations(self._source, [item for item in declarations if item is not None])
         self.diagnostics += errors
         self.declarations += kept
         if len(self.diagnostics) == before:
             self.diagnostics += tree_checks.check(self._source, kept)
         else:
             self.diagnostics += tree_checks.check_clauses(self._source, kept)
+
+    def _read_one(self, piece: list[Token], *, is_refused: bool) -> list[tree.Declaration]:
+        """Parse the tokens of a declaration without braces.
+
+        A declaration in the form of another language is reported, and read as what it is meant to be. If
+        ``is_refused``, the beginning of the piece has an error already, so another one is not reported.
+        """
+        result = self._attempt("declaration", piece)
+        if not isinstance(result, lalr.UnexpectedTokenError):
+            return [result]
+        meant = meant_declaration(piece, self._tokens)
+        if meant is None:
+            if not is_refused:
+                self._refuse(piece, "declaration", result)
+            return []
+        self.diagnostics.append(declaration_error(self._source, piece, meant))
+        read = (self._attempt("declaration", tokens) for tokens in tokens_as_meant(piece, meant.read_as))
+        return [item for item in read if not isinstance(item, lalr.UnexpectedTokenError)]
 
     def _read_block(self, piece: list[Token], kind: str) -> tree.Declaration | None:
         """Parse a spec or a test in braces: its head, then each line of its body separately.
@@ -138,6 +167,20 @@ class _Reader:
         if deep:
             self.diagnostics.append(deep)
         return deep is not None
+
+
+def _with_head(piece: list[Token], head: SpecHead) -> list[Token]:
+    """Return the tokens of a spec that begins as it should."""
+    first, last = piece[0], piece[head.length - 1]
+    name = next((token for token in piece[1 : head.length] if token.type in ("NAME", "STRING")), first)
+    sign = ("LBRACE", "{") if head.text.endswith("{") else ("EQUAL", "=")
+    tokens = [
+        Token("SPEC", "spec", first.start, first.end),
+        Token("NAME", head.name, name.start, name.end),
+        Token(*sign, last.start, last.end),
+        *piece[head.length :],
+    ]
+    return [*tokens, Token("RBRACE", "}", piece[-1].end, piece[-1].end)] if head.closes else tokens
 
 
 def _with_end(piece: list[Token]) -> list[Token]:

@@ -1,0 +1,250 @@
+"""Read signals and entities in other forms: ``bool a``, ``signals a, b: bool``, ``signal lap: int 0..30``."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Final
+
+from tltlc.core.record import record, replace
+from tltlc.grammar.lexer import Token
+from tltlc.grammar.mistakes.declaration_forms.meant import MISSING_RANGE, Cursor, MeantDeclaration
+from tltlc.grammar.mistakes.declaration_forms.ranges import UNIT_OF_TYPE, Range, read_range, read_values, whole_values
+from tltlc.grammar.mistakes.declaration_forms.uses import used_as
+
+TYPES: Final = {
+    **dict.fromkeys(("bool", "boolean", "bit", "truth"), "bool"),
+    **dict.fromkeys(("int", "integer", "uint", "int32", "i32", "long", "short", "byte"), "int"),
+    **dict.fromkeys(("number", "float", "double", "real", "num", "numeric", "decimal", "float32", "f32"), "number"),
+    **dict.fromkeys(("ratio", "percent", "percentage", "fraction"), "ratio"),
+    **dict.fromkeys(("length", "distance"), "length"),
+    **dict.fromkeys(("time", "duration"), "time"),
+    **dict.fromkeys(("speed", "velocity"), "speed"),
+    "angle": "angle",
+}
+"""Maps names of types, in this and in other languages, to the types of this language."""
+TYPE_WORDS: Final = frozenset(TYPES)
+_LEADING_TYPES: Final = ("bool", "boolean", "int", "integer", "float", "double", "number", "real", "enum")
+"""Types that begin a declaration in other languages, as in ``bool seen``."""
+SIGNAL_WORDS: Final = frozenset(
+    """
+    signal signals var vars variable variables input inputs sensor sensors observation obs observable flag flags prop
+    props proposition atom let val state_var event events declare
+    """.split()
+)
+ENTITY_WORDS: Final = frozenset("entities object objects actor actors".split())
+_TRUTHS: Final = frozenset("flag flags prop props proposition atom event events".split())
+"""Words for signals that are true or false."""
+_NO_RANGE: Final = ("bool", "ratio")
+_ASSUMED: Final = 1_000_000
+"""The ends of the range with which a file is checked if the author wrote none."""
+_IS_TYPE: Final = (":", "=", "as", "is")
+
+
+@record
+class _Type:
+    """What is declared of a signal: its type, its range and the values of an enum, each empty if none is written."""
+
+    type: str = ""
+    ends: tuple[str, ...] = ()
+    values: tuple[str, ...] = ()
+
+
+def read_entities(tokens: Sequence[Token]) -> MeantDeclaration | None:
+    """Return the entities that ``entities a, b`` or ``entity: a`` is meant to declare, or None."""
+    cursor = Cursor(tokens)
+    if not cursor.accept("entity", *ENTITY_WORDS):
+        return None
+    cursor.accept(":", "=")
+    names = _names(cursor)
+    cursor.accept(";")
+    if not names or not cursor.is_done:
+        return None
+    line = f"entity {', '.join(names)}"
+    return MeantDeclaration("entity", (line,), (line,))
+
+
+def read_signals(tokens: Sequence[Token], text: Sequence[Token]) -> MeantDeclaration | None:
+    """Return the signals that a piece is meant to declare, or None.
+
+    ``text`` are the tokens of the whole file, which say how a signal without a type is used.
+    """
+    cursor = Cursor(tokens)
+    word = cursor.token.text.lower()
+    is_named = cursor.accept(*SIGNAL_WORDS)
+    if is_named and cursor.accept(":") and cursor.token.type != "NAME":
+        return None
+    found: list[MeantDeclaration] = []
+    while not cursor.is_done:
+        meant = _signals(cursor, text, word, is_named or bool(found))
+        if meant is None:
+            return None
+        found.append(meant)
+        while cursor.accept(";", ","):
+            pass
+        cursor.accept(*SIGNAL_WORDS)
+    if not found:
+        return None
+    return MeantDeclaration(
+        "signal",
+        tuple(line for meant in found for line in meant.lines),
+        tuple(line for meant in found for line in meant.read_as),
+        all(meant.is_complete for meant in found),
+        found[0].help if len(found) == 1 else "",
+        next((meant.reason for meant in found if meant.reason), ""),
+    )
+
+
+def _signals(cursor: Cursor, text: Sequence[Token], word: str, is_named: bool) -> MeantDeclaration | None:
+    """Read one or more names with one type."""
+    first = _leading_type(cursor)
+    names = _names(cursor)
+    if not names or not (first is not None or is_named or cursor.token.text == ":"):
+        return None
+    if first is not None and first.type == "enum":
+        cursor.accept(":", "=")
+        values = read_values(cursor)
+        type_ = _Type(values=values) if values else None
+    else:
+        type_ = _type(cursor, first, is_named)
+    if type_ is None:
+        return None
+    value = _default(cursor)
+    if value is None or not (cursor.is_done or cursor.token.text in (";", ",", *SIGNAL_WORDS)):
+        return None
+    if not (type_.type or type_.ends or type_.values):
+        if word == "let":
+            return None
+        is_bool = word in _TRUTHS or value in ("true", "false")
+        type_ = _Type("bool") if is_bool else type_
+    meant = _declared(names, type_, text)
+    return replace(meant, reason=f"{meant.reason}: the game supplies the value at each step") if value else meant
+
+
+def _names(cursor: Cursor) -> tuple[str, ...]:
+    """Read names, with their parameters, that are separated by commas; stop before what follows a last comma."""
+    names: list[str] = []
+    while cursor.token.type == "NAME":
+        name = cursor.token.text
+        cursor.at += 1
+        if cursor.token.text == "(" and cursor.peek(1).type in ("NAME", "ENTITY"):
+            name += _parameters(cursor)
+        names.append(name)
+        is_listed = cursor.token.text == "," and cursor.peek(1).type == "NAME"
+        if not is_listed:
+            break
+        cursor.at += 1
+    return tuple(names)
+
+
+def _parameters(cursor: Cursor) -> str:
+    """Read ``(x: entity)`` and return it; a parameter without a name gets one."""
+    texts: list[str] = []
+    while not cursor.is_done and cursor.token.text != ")":
+        texts.append(cursor.token.text)
+        cursor.at += 1
+    cursor.at += 1
+    inside = " ".join(texts[1:])
+    return "(x: entity)" if inside == "entity" else f"({inside})".replace(" :", ":").replace(" ,", ",")
+
+
+def _leading_type(cursor: Cursor) -> _Type | None:
+    """Read a type before the name, as in ``bool seen``; None if there is none."""
+    word, following = cursor.token.text.lower(), cursor.peek(1)
+    if word not in _LEADING_TYPES or following.type != "NAME" or following.text.lower() in (*_IS_TYPE, "in", "from"):
+        return None
+    cursor.at += 1
+    return _Type("enum") if word == "enum" else _Type(TYPES[word])
+
+
+def _type(cursor: Cursor, first: _Type | None, is_named: bool) -> _Type | None:
+    """Read the type, range or values after the names; None if they cannot be read."""
+    is_typed = cursor.token.text.lower() in _IS_TYPE or cursor.accept("of", "type")
+    if first is None and cursor.peek().text == "{" and is_named:
+        values = read_values(cursor)
+        return _Type(values=values) if values else None
+    is_value = cursor.token.text == "=" and cursor.peek(1).type in ("NUMBER", "TRUE", "FALSE", "MINUS")
+    if is_typed and not is_value and cursor.accept(*_IS_TYPE):
+        cursor.at += cursor.token.text in ("a", "an") and cursor.peek(1).text.lower() in TYPES
+    word = cursor.token.text.lower()
+    type_ = first.type if first else ""
+    if word in TYPES and cursor.peek(1).text not in ("|", "/", "or"):
+        cursor.at += 1
+        if type_ and type_ != TYPES[word]:
+            return None
+        type_ = TYPES[word]
+    if not type_:
+        values = read_values(cursor)
+        if values:
+            return _Type(values=values)
+    elif cursor.token.text == ",":
+        return _Type(type_)
+    found = whole_values(cursor) or read_range(cursor)
+    return _with_range(type_, found) if found else _Type(type_)
+
+
+def _with_range(type_: str, found: Range) -> _Type | None:
+    """Return a type with a range, whose unit may say more about the type."""
+    low, high, type_of_unit = found
+    if type_ in ("", "number") and type_of_unit:
+        type_ = type_of_unit
+    if type_ == "int" and not all(end.lstrip("-").isdecimal() or end.endswith("inf") for end in (low, high)):
+        return None
+    return None if type_ == "bool" else _Type(type_, (low, high))
+
+
+def _default(cursor: Cursor) -> str | None:
+    """Read the value that a signal is given; return it, or "" if there is none, or None if it cannot be read."""
+    if not cursor.accept("=", "default", ":=", "initially", "init"):
+        return ""
+    cursor.accept("=", ":")
+    sign = "-" if cursor.accept("-") else ""
+    token = cursor.token
+    if token.type not in ("NUMBER", "TRUE", "FALSE", "NAME", "STRING"):
+        return None
+    cursor.at += 1
+    if cursor.token.type == "UNIT":
+        cursor.at += 1
+    return f"{sign}{token.text.lower()}"
+
+
+def _declared(names: Sequence[str], type_: _Type, text: Sequence[Token]) -> MeantDeclaration:
+    """Return the declarations of signals with one type."""
+    if type_.values:
+        lines = tuple(f"signal {name}: ({', '.join(type_.values)})" for name in names)
+        return MeantDeclaration("signal", lines, lines)
+    ends = f" in [{', '.join(type_.ends)}]" if type_.ends else ""
+    if ends or type_.type in _NO_RANGE:
+        lines = tuple(f"signal {name}{f': {type_.type}' if type_.type else ''}{ends}" for name in names)
+        return MeantDeclaration("signal", lines, lines)
+    if type_.type:
+        return _without_range(names, type_.type)
+    return _without_type(names, text)
+
+
+def _without_range(names: Sequence[str], type_: str) -> MeantDeclaration:
+    unit = UNIT_OF_TYPE.get(type_, "")
+    assumed = f"in [-{_ASSUMED}{unit}, {_ASSUMED}{unit}]"
+    return MeantDeclaration(
+        "signal",
+        tuple(f"signal {name}: {type_} {MISSING_RANGE}" for name in names),
+        tuple(f"signal {name}: {type_} {assumed}" for name in names),
+        is_complete=False,
+        reason=", with its least value for LOW and its greatest for HIGH",
+    )
+
+
+def _without_type(names: Sequence[str], text: Sequence[Token]) -> MeantDeclaration:
+    """Return the declarations of signals without a type, which the rest of the file may tell."""
+    uses = {used_as(name.partition("(")[0], text) for name in names}
+    if uses == {"bool"}:
+        lines = tuple(f"signal {name}: bool" for name in names)
+        return MeantDeclaration("signal", lines, lines)
+    if uses == {"number"}:
+        return _without_range(names, "number")
+    if uses == {"int"}:
+        return _without_range(names, "int")
+    help_ = (
+        f"write `signal {names[0]}: bool` if it is true or false, `signal {names[0]}: number {MISSING_RANGE}` "
+        f"if it is a number, with its least value for LOW and its greatest for HIGH"
+    )
+    return MeantDeclaration("signal", (), (), False, help_)
