@@ -88,3 +88,13 @@ def test_a_bound_in_steps_where_the_clock_varies_gets_a_time() -> None:
     assert error_of("keep b implies next for 2 s a", VARIES)[1].help == (
         "write `weak_next always for 2 s a` if it must hold for that time from the next step on"
     )
+
+
+def test_an_equality_of_a_signal_with_a_whole_range_says_to_declare_an_int() -> None:
+    error = error_of("keep lap == 2", "signal lap in [1, 3]\n")[1]
+    assert "`signal lap: int in [1, 3]`" in (error.help or "")
+    assert "true or false" not in (error.help or "")
+    assert error.fixes == ()
+    assert (
+        error_of("keep lap == 1", "signal lap in [1, 3]\n")[1].help == "write `lap <= 1`: the range of `lap` ends there"
+    )

@@ -74,6 +74,12 @@ def equality(failure: ParseFailure) -> Diagnostic | None:
         text = f"({text})" if is_part and not at_end else text
         if at_end:
             boolean_text = ""
+        elif _may_be_int(failure, (start, at)):
+            name = failure.tokens[start].text
+            ends = ", ".join(declared_names(failure.source).names[name].ends)
+            help_ = f"declare whole numbers as such: `signal {name}: int in [{ends}]`; then `{a} {sign} {b}` is right"
+            span = span_of(failure.tokens[start:stop])
+            return failure.error("TLT0110", title, help_, span=span)
         elif b in ("0", "1"):
             boolean_text = a if (b == "1") != is_unequal else f"not {a}"
             reason = f", or `{boolean_text}` if its value is true or false"
@@ -162,6 +168,14 @@ def _sign_at_end(failure: ParseFailure, side: Range, value: str, is_unequal: boo
     if low == high:
         return ""
     return {(True, False): "<=", (True, True): ">", (False, False): ">=", (False, True): "<"}[low, is_unequal]
+
+
+def _may_be_int(failure: ParseFailure, side: Range) -> bool:
+    """Whether a side is a signal without a type whose range has whole ends, so that it may be meant as an int."""
+    declared = declared_names(failure.source).names.get(failure.tokens[side[0]].text)
+    if declared is None or side[1] != side[0] + 1 or declared.keyword != "signal" or declared.type != "number":
+        return False
+    return len(declared.ends) == 2 and all(end.replace("- ", "").isdecimal() for end in declared.ends)
 
 
 def _enum_values(failure: ParseFailure, side: Range) -> tuple[str, ...]:
