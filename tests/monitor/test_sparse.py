@@ -99,7 +99,7 @@ def test_the_command_judges_traces_of_events(events: dict[str, str], tltlc) -> N
         refused_run = tltlc("monitor", "hide.tltl", name)
         assert (refused_run.status, code in refused_run.err, "--sparse" in refused_run.err) == (1, True, True)
         sparse = tltlc("monitor", "hide.tltl", name, "--sparse")
-        assert (sparse.status, sparse.out, sparse.err) == (0, dense.out, "")
+        assert (sparse.status, sparse.out, sparse.err) == (0, dense.out, dense.err)
 
 
 @pytest.mark.parametrize("workers", ["1", "2"])

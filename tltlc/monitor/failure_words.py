@@ -12,13 +12,13 @@ from tltlc.logic.text.printer import words_text
 from tltlc.monitor.failure import Cause, Failure
 
 
-def failure_words(fspa: Fspa, failed: Failure, steps: int | None = None) -> str:
+def failure_words(fspa: Fspa, failed: Failure, steps: int | None = None, time: str = "") -> str:
     """Return a phrase such as "violated at step 3 of 5: `at(boss)` without `has(sword)`, clause 2".
 
-    ``steps`` is the number of steps of the trace; if it is None, the phrase says nothing of it. Clauses are
-    counted from 1.
+    ``steps`` is the number of steps of the trace; if it is None, the phrase says nothing of it. ``time`` stands
+    behind the number of the step: `` (1.03 s)``. Clauses are counted from 1.
     """
-    place = f"violated at step {failed.step}" + (f" of {steps}" if steps is not None else "")
+    place = f"violated at step {failed.step}{time}" + (f" of {steps}" if steps is not None else "")
     if failed.cause is None:
         return f"{place}: no trace can meet the spec"
     words = cause_words(fspa, failed.cause)

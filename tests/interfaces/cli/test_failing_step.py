@@ -41,7 +41,7 @@ def trace(*rows: str) -> str:
 def test_the_step_the_atoms_and_the_clause_are_named(tltlc) -> None:  # type: ignore[no-untyped-def]
     judged = tltlc("monitor", "boss.tltl", trace("0,0,50", "0,0,30", "1,0,50", "1,1,50"))
     assert judged.status == 1
-    assert judged.out.splitlines()[-4:] == [
+    assert judged.err.splitlines() == [
         "boss.tltl:7: avoid boss_door and not once sword",
         "at step 3: boss_door is true, sword now or before is false",
         "what remained before: Reach boss_door; and keep not boss_door or sword now or before throughout, and keep "
@@ -51,7 +51,7 @@ def test_the_step_the_atoms_and_the_clause_are_named(tltlc) -> None:  # type: ig
 
 
 def test_a_comparison_is_told_with_the_value_that_was_measured(tltlc) -> None:  # type: ignore[no-untyped-def]
-    out = tltlc("monitor", "boss.tltl", trace("0,0,50", "0,0,12.3456")).out
+    out = tltlc("monitor", "boss.tltl", trace("0,0,50", "0,0,12.3456")).err
     assert "boss.tltl:8: keep health > 20\nat step 2: health is 12.3\n" in out
     assert out.endswith("not accepted: violated at step 2 of 2: `health <= 20`, clause 3\n")
 
@@ -68,6 +68,8 @@ def test_the_json_document_has_the_failure_in_fields(tltlc) -> None:  # type: ig
         "file": "boss.tltl",
         "line": 7,
         "atoms": {"boss_door": 1.0, "once sword": -1.0},
+        "seconds": None,
+        "also": [],
     }
     assert [row["failed_step"] for row in document["rows"]] == [None, 2]
     accepted = json.loads(tltlc("monitor", "boss.tltl", trace("0,1,50", "1,0,50"), "--json").out)
@@ -77,9 +79,8 @@ def test_the_json_document_has_the_failure_in_fields(tltlc) -> None:  # type: ig
 def test_an_error_later_in_the_trace_does_not_hide_the_failure(tltlc) -> None:  # type: ignore[no-untyped-def]
     name = trace("1,0,50", "1,x,50")
     judged = tltlc("monitor", "boss.tltl", name)
-    assert judged.out.endswith(
-        "before the error: violated at step 1: `boss_door` without `sword now or before`, clause 2\n"
-    )
+    assert judged.err.startswith("boss.tltl:7: ")
+    assert ("before the error: violated at step 1: `boss_door` without `sword now or before`, clause 2\n") in judged.err
     assert "error[TLT0622]" in judged.err
     document = json.loads(tltlc("monitor", "boss.tltl", name, "--json").out)
     assert (document["accepted"], document["verdict"], document["failure"]["failed_step"]) == (None, None, 1)
@@ -87,13 +88,13 @@ def test_an_error_later_in_the_trace_does_not_hide_the_failure(tltlc) -> None:  
 
 def test_an_artefact_knows_the_clauses_but_not_their_lines(tltlc) -> None:  # type: ignore[no-untyped-def]
     assert tltlc("compile", "boss.tltl", "-t", "json").status == 0
-    out = tltlc("monitor", "boss.fspa.json", trace("1,0,50")).out
+    out = tltlc("monitor", "boss.fspa.json", trace("1,0,50")).err
     assert "clause 2: avoid boss_door and not once sword\n" in out
     assert out.endswith("violated at step 1 of 1: `boss_door` without `sword now or before`, clause 2\n")
 
 
 def test_what_remains_is_told_of_a_trace_that_is_too_short(tltlc) -> None:  # type: ignore[no-untyped-def]
-    *_, remains, last = tltlc("monitor", "boss.tltl", trace("0,1,50")).out.splitlines()
+    remains, last = tltlc("monitor", "boss.tltl", trace("0,1,50")).err.splitlines()
     assert (remains, last) == (
         "what remains: Reach boss_door; and keep not boss_door or sword now or before throughout, and keep health > 20 "
         "throughout.",
@@ -126,6 +127,56 @@ def test_a_table_leaves_out_atoms_for_which_there_is_no_room() -> None:
     (row,) = run(Monitor(fspa), [{"boss_door": True, "sword": True, "health": 50}])
     assert table.left_out == 2
     assert all(len(line) <= 60 for line in table.rows(row) if not line.startswith("to do"))
+
+
+def test_every_clause_that_is_broken_is_told_with_its_step_and_time(tltlc) -> None:  # type: ignore[no-untyped-def]
+    Path("boss.tltl").write_text(f"clock 30 Hz\n{SPEC}")
+    name = trace("0,0,50", "1,0,50", "0,0,50", "0,0,10", "0,0,50")
+    judged = tltlc("monitor", "boss.tltl", name)
+    *_, also, last = judged.err.splitlines()
+    assert also == "also: clause 3 at step 4 (0.1 s): boss.tltl:9: keep health > 20"
+    assert last.startswith("not accepted: violated at step 2 (0.03 s) of 5: ")
+    failure = json.loads(tltlc("monitor", "boss.tltl", name, "--json").out)["failure"]
+    assert failure["seconds"] == pytest.approx(1 / 30)
+    (also,) = failure["also"]
+    assert also.pop("seconds") == pytest.approx(0.1)
+    assert also == {
+        "failed_step": 4,
+        "failed_clause": "keep health > 20",
+        "clause": 3,
+        "file": "boss.tltl",
+        "line": 9,
+    }
+
+
+def test_with_a_varying_clock_times_are_sums_of_steps(tltlc) -> None:  # type: ignore[no-untyped-def]
+    Path("boss.tltl").write_text(f"clock varies\n{SPEC}")
+    Path("run.csv").write_text("dt,boss_door,sword,health\n9,0,0,50\n1,0,0,50\n0.25,1,0,50\n2,0,0,1\n")
+    *_, also, last = tltlc("monitor", "boss.tltl", "run.csv").err.splitlines()
+    assert also.startswith("also: clause 3 at step 4 (3.25 s): ")
+    assert last.startswith("not accepted: violated at step 3 (1.25 s) of 4: ")
+
+
+def test_csv_has_only_the_steps_so_that_it_can_be_read_again(tltlc) -> None:  # type: ignore[no-untyped-def]
+    judged = tltlc("monitor", "boss.tltl", trace("0,0,50", "1,0,50"), "--csv")
+    assert [line.count(",") for line in judged.out.splitlines()] == [8, 8, 8]
+    assert judged.err.splitlines()[-1].startswith("not accepted: violated at step 2 of 2: ")
+    Path("steps.csv").write_text(judged.out)
+    mined = tltlc("mine", "steps.csv")
+    assert (mined.status, "columns of robustness values: boss_door, sword" in mined.err) == (0, True)
+
+
+def test_a_narrow_table_shows_the_atom_that_fails() -> None:
+    (fspa,) = compile_text(SPEC)
+    table, monitor = StepTable(fspa, width=60), Monitor(fspa)
+    assert "health > 20" not in list(table.head())[-1]
+    good, bad = run(monitor, [{"boss_door": False, "sword": False, "health": health} for health in (50, 10)])
+    assert len(list(table.rows(good))) == 1
+    assert monitor.failure is not None
+    assert monitor.failure.cause is not None
+    titles, line = table.rows(bad, [monitor.failure.cause.prime[0][0]])
+    assert titles == " step  verdict    progress     reward  health > 20  sword"
+    assert line.split()[-2:] == ["-0.5", "no"]
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="there are no pseudo-terminals")

@@ -134,8 +134,8 @@ def test_parquet_is_read_like_csv(folder: Path, tltlc) -> None:  # type: ignore[
     steps = tltlc("monitor", "fetch.tltl", "lava.parquet")
     assert "error[TLT0612]" in steps.err or "error[TLT0611]" in steps.err
     parquet.write_table(pyarrow.table({**columns, "at_exit": [0.0, 1.0]}), "lava.parquet")
-    assert tltlc("monitor", "fetch.tltl", "lava.parquet").out.splitlines()[-1] == (
-        "not accepted: violated at step 2 of 2: `on_lava`, clause 2"
+    assert tltlc("monitor", "fetch.tltl", "lava.parquet").err.splitlines()[-1] == (
+        "not accepted: violated at step 2 (0.1 s) of 2: `on_lava`, clause 2"
     )
     many = tltlc("monitor", "fetch.tltl", "lava.parquet", "traces/a.csv")
     assert many.out.splitlines()[0] == "lava.parquet: not accepted: breaks `avoid on_lava` at step 2 of 2"
@@ -182,7 +182,9 @@ def test_episodes_end_at_the_limit(folder: Path, tltlc) -> None:  # type: ignore
     Path("fetch.tltl").write_text(FETCH.replace("}", "limit 2 steps }"))
     whole = tltlc("monitor", "fetch.tltl", "traces/a.csv", "--summary")
     assert whole.out.splitlines()[-1] == "1 of 1 accepted"
-    assert whole.err == ("1 trace is longer than the limit of 2 steps and judged whole: `--episodes` ends it there\n")
+    assert whole.err == (
+        "traces/a.csv is longer than the limit of 2 steps and judged whole: `--episodes` ends it there\n"
+    )
     episode = tltlc("monitor", "fetch.tltl", "traces/a.csv", "--episodes")
     assert (episode.status, episode.err) == (1, "")
     clause = "`reach has_key then at_exit`"

@@ -25,7 +25,7 @@ from tltlc.tools.judge.trace_files import find_traces
 from tltlc.tools.judge.verdict import JudgedTrace
 
 _MOST_NAMED: Final = 3
-"""At most this many files that are not traces are named. Further ones are counted."""
+"""Notes about files name at most this many. Further ones are counted."""
 
 
 @record
@@ -111,11 +111,21 @@ def _long_steps(traces: Iterable[JudgedTrace]) -> tuple[Diagnostic, ...]:
 
 def _limit_note(traces: Iterable[JudgedTrace], limit: int | None) -> str:
     """Return a note about traces that are longer than the limit of the spec; empty if there are none."""
-    longer = sum(limit is not None and trace.verdict is not None and trace.verdict.samples > limit for trace in traces)
-    if not longer:
-        return ""
-    are, them = ("trace is", "it") if longer == 1 else ("traces are", "them")
-    return f"{longer} {are} longer than the limit of {limit} steps and judged whole: `--episodes` ends {them} there"
+    longer = [
+        trace.name
+        for trace in traces
+        if limit is not None and trace.verdict is not None and trace.verdict.samples > limit
+    ]
+    return limit_note(longer, limit) if longer and limit is not None else ""
+
+
+def limit_note(longer: Sequence[str], limit: int) -> str:
+    """Return a note about the traces ``longer``, which have more steps than the limit of the spec."""
+    rest = f" and {len(longer) - _MOST_NAMED} more" if len(longer) > _MOST_NAMED else ""
+    names = f"{', '.join(longer[:_MOST_NAMED])}{rest}"
+    is_, them = ("is", "it") if len(longer) == 1 else ("are", "them")
+    note = f"{names} {is_} longer than the limit of {limit} steps and judged whole: `--episodes` ends {them} there"
+    return replace_unprintable(note)
 
 
 def _with_progress(judged: Iterable[JudgedTrace], total: int) -> Iterator[JudgedTrace]:

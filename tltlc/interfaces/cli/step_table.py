@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Final
 
 from tltlc.automaton.fspa import Fspa
@@ -21,33 +21,46 @@ class StepTable:
     """A table with a line for each step, at most ``width`` characters wide.
 
     Numbers have three significant digits; atoms that are only true or false are ``yes`` and ``no``. Atoms
-    that do not fit are left out, and counted in ``left_out``.
+    that do not fit are left out, and counted in ``left_out``. If one of them decides that the trace fails, the
+    table goes on with other columns from this step on: those of the deciding atoms come first.
     """
 
     def __init__(self, fspa: Fspa, width: int) -> None:
+        self._fspa, self._width, self._known = fspa, width, flags(fspa)
+        self._to_do = label_text(fspa, 0)
+        self._choose(())
+
+    def _choose(self, first: Sequence[int]) -> None:
+        """Choose the columns: those of the atoms ``first``, at least one of them, and further ones that fit."""
         columns = [("step", 5), ("verdict", 9), ("progress", 8), ("reward", _NUMBER)]
         self._titles = [(title, max(least, len(title))) for title, least in columns]
         used = sum(wide + 2 for _, wide in self._titles)
         self._atoms: list[int] = []
-        known = flags(fspa)
-        for index, atom in enumerate(fspa.atoms):
-            wide = max(len(atom.name), 3 if index in known else _NUMBER)
-            if used + wide <= width:
-                self._titles.append((atom.name, wide))
+        for index in dict.fromkeys((*first, *range(len(self._fspa.atoms)))):
+            name = self._fspa.atoms[index].name
+            wide = max(len(name), 3 if index in self._known else _NUMBER)
+            if used + wide <= self._width or (first and not self._atoms):
+                self._titles.append((name, wide))
                 self._atoms.append(index)
                 used += wide + 2
-        self.left_out = len(fspa.atoms) - len(self._atoms)
-        self._flags = [index in known for index in self._atoms]
-        self._to_do = label_text(fspa, 0)
+        self.left_out = len(self._fspa.atoms) - len(self._atoms)
+        self._flags = [index in self._known for index in self._atoms]
 
     def head(self) -> Iterator[str]:
         """Yield the lines before the first step: what the spec asks for, and the titles of the columns."""
         yield f"to do: {self._to_do}"
         yield self._line([title for title, _ in self._titles])
 
-    def rows(self, row: RunStep) -> Iterator[str]:
-        """Yield the line of a step, and after it what remains to be done, if the step changed it."""
+    def rows(self, row: RunStep, deciding: Sequence[int] = ()) -> Iterator[str]:
+        """Yield the line of a step, and after it what remains to be done, if the step changed it.
+
+        ``deciding`` are the indices of the atoms that decide that the trace fails, the one to name first; the
+        titles come again if the table did not have all of them.
+        """
         step = row.step
+        if step.failed_step == row.number and not set(deciding) <= set(self._atoms):
+            self._choose(deciding)
+            yield self._line([title for title, _ in self._titles])
         atoms = [
             ("yes" if row.values[index] > 0.0 else "no") if flag else short_number(row.values[index])
             for index, flag in zip(self._atoms, self._flags, strict=True)

@@ -76,7 +76,7 @@ def odd_columns(
             no_truths = tuple(trace.trace for trace in traces if trace.columns[name] != ColumnKind.TRUTHS)
             no_robustness = tuple(trace.trace for trace in traces if trace.columns[name] == ColumnKind.OTHER)
             is_robustness = any(trace.columns[name] == ColumnKind.ROBUSTNESS for trace in traces)
-            if 2 * len(no_truths) < len(traces):
+            if 0 < 2 * len(no_truths) < len(traces):
                 groups.setdefault((no_truths, "no truths"), []).append(name)
             elif is_robustness and 0 < 2 * len(no_robustness) < len(traces):
                 groups.setdefault((no_robustness, "no robustness"), []).append(name)

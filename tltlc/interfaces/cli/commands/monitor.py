@@ -9,7 +9,7 @@ import sys
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, BinaryIO, Literal
+from typing import TYPE_CHECKING, BinaryIO, Literal, TextIO
 
 import click
 
@@ -22,12 +22,11 @@ from tltlc.interfaces.cli.settings import CompileSettings, source_options
 from tltlc.io.spec_file import ARTEFACT_ENDING, STDIN, STDIN_NAME, input_error, input_kind, split, standard_input
 
 if TYPE_CHECKING:
-    from tltlc.automaton.fspa import Fspa
+    from tltlc.interfaces.cli.trace_failure import TraceFailure
     from tltlc.monitor.monitor import Monitor
     from tltlc.monitor.run import RunStep, TraceOutcome
     from tltlc.monitor.trace_rows import Stream
     from tltlc.resolve.spec import Signal
-    from tltlc.tools.judge.failing_step import FailingStep
 
 
 Output = Literal["json", "csv", "table"]
@@ -85,11 +84,12 @@ def command(
     """Judge recorded traces by a spec. A TRACE is CSV with a header of signal names, JSON lines, Parquet, or a tape.
 
     For one file, the output has one row per step (state, verdict, progress, reward, value of each atom) and the verdict
-    of the whole trace. If the trace fails, the output says at which step, which clause it breaks there, and which atoms
-    decide it. For several files or a folder, the output has one line per trace, and a summary that says which clauses
-    the failed traces break or leave undone. In a folder, files that end in .csv, .jsonl, .tape.jsonl.gz or .parquet are
-    traces; a tape beside a trace with the same name is the same play, and is left out. A spec over infinite traces
-    accepts a trace that ends in a goal state. The exit status is 0 if all traces are accepted, and 1 otherwise.
+    of the whole trace; beside CSV, the verdict goes to standard error. If the trace fails, the verdict says at which
+    step, which clause it breaks there, which atoms decide it, and which clauses it breaks later. For several files or a
+    folder, the output has one line per trace, and a summary that says which clauses the failed traces break or leave
+    undone. In a folder, files that end in .csv, .jsonl, .tape.jsonl.gz or .parquet are traces; a tape beside a trace
+    with the same name is the same play, and is left out. A spec over infinite traces accepts a trace that ends in a
+    goal state. The exit status is 0 if all traces are accepted, and 1 otherwise.
     """
     from tltlc.io.files import is_dir
 
@@ -120,11 +120,11 @@ def _judge_steps(
     sparse: bool,
 ) -> int:
     """Judge one trace, and print a row for each step while reading it; return the exit status."""
+    from tltlc.interfaces.cli.trace_failure import TraceFailure
     from tltlc.monitor import Monitor
     from tltlc.monitor.long_steps import LongSteps, shortest_time
     from tltlc.monitor.run import outcome, run
     from tltlc.monitor.traces import read_trace
-    from tltlc.tools.judge.failing_step import FailingStep
 
     result: TraceOutcome | None = None
     with Report(format, results=True) as report:
@@ -142,19 +142,26 @@ def _judge_steps(
                 clock_varies=fspa.clock_varies,
                 sparse=sparse,
             )
-            failing = FailingStep(monitor, spec_input.clause_places())
-            rows = run(monitor, failing.watched(steps.watched(samples)))
+            failure = TraceFailure(monitor, spec_input)
+            rows = run(monitor, failure.watched(steps.watched(samples)))
             show = {"json": _show_json, "csv": _show_csv, "table": _show_table}[output]
             try:
-                result = outcome(show(fspa, failing.noted(_with_notices(rows, monitor.notices, report))))
+                result = outcome(show(monitor, failure.noted(_with_notices(rows, monitor.notices, report))))
             except TltlError:
-                (_break_json if output == "json" else _break_text)(monitor, failing)
+                if output == "json":
+                    _break_json(failure)
+                else:
+                    _print_lines(failure.lines("before the error"), _judgement_stream(output))
                 raise
-        (_end_json if output == "json" else _end_text)(result, monitor, failing)
+        if output == "json":
+            _end_json(result, failure)
+        else:
+            _print_lines(_judgement(result, monitor, failure), _judgement_stream(output))
         report.add(steps.warnings())
         if result and fspa.limit_steps is not None and result.steps > fspa.limit_steps:
-            limit = f"the limit of {fspa.limit_steps} steps"
-            report.say(f"the trace is longer than {limit} and judged whole: `--episodes` ends it there")
+            from tltlc.interfaces.cli.judged_traces import limit_note
+
+            report.say(limit_note([_trace_name(trace)], fspa.limit_steps))
     return report.status or (exits.CLEAN if result and result.accepted else exits.FINDINGS)
 
 
@@ -222,65 +229,63 @@ def _with_notices(rows: Iterator[RunStep], notices: list[Diagnostic], report: Re
         yield row
 
 
-def _show_csv(fspa: Fspa, rows: Iterator[RunStep]) -> Iterator[RunStep]:
+def _show_csv(monitor: Monitor, rows: Iterator[RunStep]) -> Iterator[RunStep]:
     from tltlc.monitor.run import cells, header
 
     write = csv.writer(sys.stdout, lineterminator="\n").writerow
-    write(header(fspa))
+    write(header(monitor.fspa))
     for row in rows:
         write(cells(row))
         sys.stdout.flush()
         yield row
 
 
-def _show_table(fspa: Fspa, rows: Iterator[RunStep]) -> Iterator[RunStep]:
+def _show_table(monitor: Monitor, rows: Iterator[RunStep]) -> Iterator[RunStep]:
     from shutil import get_terminal_size
 
     from tltlc.interfaces.cli.step_table import StepTable
 
-    table = StepTable(fspa, get_terminal_size().columns)
+    table = StepTable(monitor.fspa, get_terminal_size().columns)
     _print_lines(table.head())
     for row in rows:
-        _print_lines(table.rows(row))
+        cause = monitor.failure.cause if monitor.failure else None
+        atoms = (cause.atom, *(atom for atom, _ in cause.prime)) if cause and cause.atom is not None else ()
+        _print_lines(table.rows(row, atoms))
         yield row
     if table.left_out:
-        atoms = "1 more atom does" if table.left_out == 1 else f"{table.left_out} more atoms do"
-        print(f"{atoms} not fit beside these: `--csv` shows all")
+        more = "1 more atom does" if table.left_out == 1 else f"{table.left_out} more atoms do"
+        print(f"{more} not fit beside these: `--csv` shows all")
 
 
-def _print_lines(lines: Iterable[str]) -> None:
+def _judgement_stream(output: Output) -> TextIO:
+    """Return where the judgement goes: beside a table, or away from CSV, which other programs read."""
+    return sys.stderr if output == "csv" else sys.stdout
+
+
+def _print_lines(lines: Iterable[str], stream: TextIO | None = None) -> None:
     from tltlc.diagnostics.formats.text import replace_unprintable
 
     for line in lines:
-        print(replace_unprintable(line), flush=True)
+        print(replace_unprintable(line), file=stream or sys.stdout, flush=True)
 
 
-def _end_text(result: TraceOutcome, monitor: Monitor, failing: FailingStep) -> None:
-    """Print the verdict of the trace; if it is not accepted, also why, and what remains."""
+def _judgement(result: TraceOutcome, monitor: Monitor, failure: TraceFailure) -> Iterator[str]:
+    """Yield the lines with the verdict of the trace; if it is not accepted, also why, and what remains."""
     from tltlc.automaton.text import label_text
-    from tltlc.monitor.failure_words import failure_words
 
     if monitor.failure is not None:
-        _print_lines(failing.details())
-        _print_lines([f"not accepted: {failure_words(monitor.fspa, monitor.failure, result.steps)}"])
+        yield from failure.lines("not accepted", result.steps)
         return
     if not result.accepted:
-        _print_lines([f"what remains: {label_text(monitor.fspa, monitor.state)}"])
+        yield f"what remains: {label_text(monitor.fspa, monitor.state)}"
     steps = f"{result.steps} step{'' if result.steps == 1 else 's'}"
-    print(f"{'accepted' if result.accepted else 'not accepted'}: {result.verdict} after {steps}")
+    yield f"{'accepted' if result.accepted else 'not accepted'}: {result.verdict} after {steps}"
 
 
-def _break_text(monitor: Monitor, failing: FailingStep) -> None:
-    """Say what had failed before an error in the trace."""
-    from tltlc.monitor.failure_words import failure_words
-
-    if monitor.failure is not None:
-        _print_lines([*failing.details(), f"before the error: {failure_words(monitor.fspa, monitor.failure)}"])
-
-
-def _show_json(fspa: Fspa, rows: Iterator[RunStep]) -> Iterator[RunStep]:
+def _show_json(monitor: Monitor, rows: Iterator[RunStep]) -> Iterator[RunStep]:
     from tltlc.tools.judge.json_values import step_values
 
+    fspa = monitor.fspa
     print(json.dumps({"spec": fspa.name})[:-1] + ', "rows": [', flush=True)
     between = ""
     for row in rows:
@@ -290,13 +295,13 @@ def _show_json(fspa: Fspa, rows: Iterator[RunStep]) -> Iterator[RunStep]:
         yield row
 
 
-def _break_json(_: Monitor, failing: FailingStep) -> None:
+def _break_json(failure: TraceFailure) -> None:
     """Complete the JSON document after an error: it says that there is no verdict, and what had failed before."""
-    end = {"accepted": None, "verdict": None, "failure": failing.values()}
+    end = {"accepted": None, "verdict": None, "failure": failure.values()}
     print("\n], " + json.dumps(end)[1:], flush=True)
 
 
-def _end_json(result: TraceOutcome, _: Monitor, failing: FailingStep) -> None:
+def _end_json(result: TraceOutcome, failure: TraceFailure) -> None:
     from tltlc.tools.judge.json_values import outcome_values
 
-    print("\n], " + json.dumps({**outcome_values(result), "failure": failing.values()})[1:])
+    print("\n], " + json.dumps({**outcome_values(result), "failure": failure.values()})[1:])
