@@ -144,6 +144,16 @@ def test_an_artefact_equals_its_source(tltlc: Run, inside: Path) -> None:  # noq
     assert "B accepts the same traces as A, and nothing else differs" in outcome.out
 
 
+def test_the_summary_agrees_with_the_status_if_traces_are_left_out(tltlc: Run, inside: Path) -> None:  # noqa: F811
+    spec = "signal x in [0, 10]\nspec s {\n    avoid x > 8\n"
+    Path("a.tltl").write_text(f"{spec}}}\n")
+    Path("b.tltl").write_text(f"{spec}    avoid x > 9\n}}\n")
+    outcome = tltlc("diff", "a.tltl", "b.tltl")
+    assert outcome.status == 1
+    assert "B accepts the same traces as A, except perhaps for the traces that are left out.\n" in outcome.out
+    assert "nothing else differs" not in outcome.out
+
+
 def test_exclusive_groups_declared_on_both_sides_restrict_the_traces(tltlc: Run, inside: Path) -> None:  # noqa: F811
     signals = "signal a: bool\nsignal b: bool\nsignal c: bool\n"
     Path("old.tltl").write_text(f"{signals}exclusive a, b, c\nspec s = b\n", encoding="utf-8")

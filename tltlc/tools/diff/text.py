@@ -94,7 +94,7 @@ def _pair(pair: SpecPair) -> Iterator[str]:
             side, other = ("A", "B") if comparison.only_a else ("B", "A")
             summary, meaning = f"{side} accepts a trace that {other} does not", "the opposite was not decided"
         if comparison.relation == "equivalent":
-            summary += ", but something else differs" if pair.differences else ", and nothing else differs"
+            summary += _rest(pair)
         yield f"{name}\n  {summary}{f': {meaning}' if meaning else ''}."
     if method := method_sentence(comparison):
         yield f"  {fill(method, _WIDTH, subsequent_indent='  ')}"
@@ -113,6 +113,15 @@ def _pair(pair: SpecPair) -> Iterator[str]:
     if pair.differences:
         lines = ["  what else differs:"] if comparison.relation != "equivalent" else ["  what differs:"]
         yield "\n".join([*lines, *(f"    {sentence(difference, pair)}" for difference in pair.differences)])
+
+
+def _rest(pair: SpecPair) -> str:
+    """Return what follows "B accepts the same traces as A"; it agrees with :attr:`SpecPair.is_same`."""
+    if pair.differences:
+        return ", but something else differs"
+    if pair.comparison.impossible:
+        return ", except perhaps for the traces that are left out"
+    return ", and nothing else differs"
 
 
 def _exclusive(groups: Sequence[ExclusiveGroup]) -> str:
