@@ -174,9 +174,11 @@ def test_csharp_has_constants(tmp_path: Path) -> None:
     ]
     assert "M.GuardMode.ChaseDown" in constants
     (struct,) = re.findall(r"public struct Signals\n(.*?)public static Signals", text, re.DOTALL)
-    fields = re.findall(r"public double (\w+);", struct)
+    fields = re.findall(r"public double\?? (\w+);", struct)
     lines = ["using M = Tltl.GuardsMonitor;", "internal static class Driver {", "private static void Main() {"]
     lines += ["var monitor = new M();", "var sample = M.Signals.Missing;", "M.Result result;"]
+    # An enum that is not set does not count as its first value.
+    lines += ['if (monitor.TryStep(new M.Signals(), out result)) System.Console.WriteLine("taken");']
     for given in assignments(fields, grouped(constants), "sample.{} = {};"):
         lines += [*given, "result = monitor.Step(sample);", "System.Console.WriteLine(result.State);"]
         lines += ["if (result.Verdict == M.Verdict.Satisfied || result.Verdict == M.Verdict.Violated) monitor.Reset();"]

@@ -234,7 +234,9 @@ class _Source(StepCode):
             )
             # If a bound is missing, compare with infinity by `<` or `>`, so that infinite values fail the test.
             above, below = ">" if signal.low is None else ">=", "<" if signal.high is None else "<="
-            lines.append(f"double {name} = sample.{field};")
+            # An enum that is null is missing: in `new Signals()`, 0 would be its first value.
+            given = f"sample.{field}.GetValueOrDefault(double.NaN)" if signal.values else f"sample.{field}"
+            lines.append(f"double {name} = {given};")
             lines += _check_lines(
                 f"{name} {above} {low} && {name} {below} {high}", f"{name} = Read({index}, {name}, {low}, {high});"
             )
@@ -367,7 +369,7 @@ def _check_lines(test: str, otherwise: str) -> list[str]:
 
 
 def _type(signal: Signal) -> str:
-    return "bool?" if signal.type == "bool" else "double"
+    return "bool?" if signal.type == "bool" else "double?" if signal.values else "double"
 
 
 def _fields(fields: Sequence[tuple[str, str, Signal | Param]]) -> str:
