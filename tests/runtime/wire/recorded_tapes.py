@@ -106,7 +106,7 @@ def _check_verdicts(path: Path, tmp_path: Path) -> None:
     trace = path.with_name(path.name.replace(".tape.jsonl", ".csv"))
     judged = []
     for file in (path, trace):
-        words = [sys.executable, "-m", "tltlc", "monitor", str(spec), str(file)]
+        words = [sys.executable, "-m", "tltlc", "monitor", str(spec), str(file), "--table"]
         judged.append(subprocess.run(words, capture_output=True, text=True, timeout=HANG_S, check=False).stdout)
     assert judged[0] == judged[1]
     assert judged[0].endswith(f"accepted: satisfied after {STEPS} steps\n"), judged[0][-200:]

@@ -204,7 +204,7 @@ def test_a_person_plays_the_page_and_saves_the_ride(tltlc: Run, tmp_path: Path) 
     names = [download.suggested_filename for download in downloads]
     assert names == ["courier-trace-0001.csv", "courier-trace-0001.tape.jsonl"]
     trace, tape = (tltlc("monitor", f"{SPEC}:deliver", tmp_path / name) for name in names)
-    assert trace.out.splitlines()[-1].startswith("not accepted"), trace.err
+    assert trace.err.splitlines()[-1].startswith("not accepted"), trace.err
     assert trace.out == tape.out
     ride = read_tape(tmp_path / names[1])
     env = WireEnv(WireGame("courier", FOLDER, (NODE, "node_game.js")), scene=ride.header.scene)
