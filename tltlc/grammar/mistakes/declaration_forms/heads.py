@@ -59,7 +59,8 @@ def read_head(piece: Sequence[Token]) -> SpecHead | None:
     if written == ["spec", name, "{"] or (written == ["spec", name, "="] and not is_clause):
         return None
     if opens or is_clause:
-        return SpecHead(f"spec {name or 'NAME'} {{", name or "NAME", cursor.at, not opens, name is not None)
+        closes = not opens and piece[-1].type != "RBRACE"
+        return SpecHead(f"spec {name or 'NAME'} {{", name or "NAME", cursor.at, closes, name is not None)
     return SpecHead(f"spec {name} =", str(name), cursor.at, False)
 
 
