@@ -163,16 +163,16 @@ def test_a_monitor_takes_names_and_numbers() -> None:
         ("keep seen == true", "keep seen"),
         ("keep seen != true", "keep not seen"),
         ("keep coins == 0 or seen", "keep coins <= 0 or seen"),
-        ("keep coins == 3", "keep coins >= 3 and coins <= 3"),
+        ("keep heat == 3", "keep heat >= 3 and heat <= 3"),
         ("keep F coins + 1 == fuel", "keep F (coins + 1 >= fuel and coins + 1 <= fuel)"),
-        ("keep coins != 3 or seen", "keep (coins < 3 or coins > 3) or seen"),
+        ("keep heat != 3 or seen", "keep (heat < 3 or heat > 3) or seen"),
         ("keep mode == alert", "keep mode is alert"),
         ("keep mode != alert", "keep mode is not alert"),
         ("keep mode is alrt", "keep mode is alert"),
     ],
 )
 def test_the_fix_of_an_equality_gives_the_intended_clause(clause: str, meant: str) -> None:
-    signals = MODE + "signal seen: bool  signal coins in [0, 50]  signal fuel in [0, 50]\n"
+    signals = MODE + "signal seen: bool  signal coins in [0, 50]  signal fuel in [0, 50]  signal heat in [0, 7.5]\n"
     source = SourceFile("a.tltl", f"{signals}spec s {{ {clause} }}")
     (diagnostic,) = compile_errors(source)
     assert apply_edits(source, diagnostic.fixes[0].edits).text == f"{signals}spec s {{ {meant} }}"

@@ -96,12 +96,15 @@ def unparsed_parts(module: Module, syntax_errors: Sequence[Diagnostic]) -> Unpar
     # A line outside of specs that does not begin with a known keyword may be any declaration.
     unknown = any(part.begins and not part.in_block and part.keyword is None for part in unparsed)
     keywords = {part.keyword for part in unparsed}
+    # A spec without a name, or with a name in another form, has a made-up name.
+    specs = (declaration for declaration in module.declarations if isinstance(declaration, SpecDecl))
+    made_up = any(module.source.slice(spec.name_span) != spec.name for spec in specs)
     places = [*(part.token.start for part in unparsed), *(error.labels[0].span.start for error in syntax_errors)]
     tests = (declaration for declaration in module.declarations if isinstance(declaration, TestDecl))
     return UnparsedParts(
         names=frozenset(part.token.text for part in unparsed if part.token.type == "NAME"),
         declared=frozenset(filter(None, declared)),
-        any_name=unknown or "import" in keywords or None in declared,
+        any_name=unknown or made_up or "import" in keywords or None in declared,
         clock=unknown or "clock" in keywords,
         clauses=any(part.in_block for part in unparsed),
         lines=frozenset(module.source.position(place)[0] for place in places),

@@ -120,10 +120,16 @@ def _signals(cursor: Cursor, text: Sequence[Token], word: str, is_named: bool) -
     return replace(meant, reason=f"{meant.reason}: the game supplies the value at each step") if value else meant
 
 
+def _lacks_name(cursor: Cursor) -> bool:
+    """Whether a range or a type stands where a name should be, as in ``signal in [0, 3]``."""
+    word, following = cursor.token.text, cursor.peek(1).text
+    return (word in ("in", "from") and following != ":") or (word in TYPE_WORDS and following in ("in", "from"))
+
+
 def _names(cursor: Cursor) -> tuple[str, ...]:
     """Read names, with their parameters, that are separated by commas; stop before what follows a last comma."""
     names: list[str] = []
-    while cursor.token.type == "NAME":
+    while cursor.token.type == "NAME" and not _lacks_name(cursor):
         name = cursor.token.text
         cursor.at += 1
         if cursor.token.text == "(" and cursor.peek(1).type in ("NAME", "ENTITY"):
