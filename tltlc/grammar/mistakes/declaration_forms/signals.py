@@ -133,7 +133,10 @@ def _names(cursor: Cursor) -> tuple[str, ...]:
         name = cursor.token.text
         cursor.at += 1
         if cursor.token.text == "(" and cursor.peek(1).type in ("NAME", "ENTITY"):
-            name += _parameters(cursor)
+            parameters = _parameters(cursor)
+            if parameters is None:
+                return ()
+            name += parameters
         names.append(name)
         is_listed = cursor.token.text == "," and cursor.peek(1).type == "NAME"
         if not is_listed:
@@ -142,12 +145,14 @@ def _names(cursor: Cursor) -> tuple[str, ...]:
     return tuple(names)
 
 
-def _parameters(cursor: Cursor) -> str:
-    """Read ``(x: entity)`` and return it; a parameter without a name gets one."""
+def _parameters(cursor: Cursor) -> str | None:
+    """Read ``(x: entity)`` and return it, None without ``)``; a parameter without a name gets one."""
     texts: list[str] = []
     while not cursor.is_done and cursor.token.text != ")":
         texts.append(cursor.token.text)
         cursor.at += 1
+    if cursor.is_done:
+        return None
     cursor.at += 1
     inside = " ".join(texts[1:])
     return "(x: entity)" if inside == "entity" else f"({inside})".replace(" :", ":").replace(" ,", ",")
