@@ -68,7 +68,8 @@ CORRECTIONS = {
     "keep coins − 2 > 3": ["keep coins - 2 > 3"],
     "keep turn > 90°and a": ["keep turn > 90 deg and a"],
     "keep coins > .5": ["keep coins > 0.5"],
-    "keep coins == 3": ["keep coins >= 3 and coins <= 3"],
+    "keep coins == 3": [],
+    "keep coins == 3.5": ["keep coins >= 3.5 and coins <= 3.5"],
     "keep alive == hidden": ["keep alive >= hidden and alive <= hidden", "keep alive iff hidden"],
     "keep near(key) != near(chest)": [
         "keep near(key) < near(chest) or near(key) > near(chest)",
@@ -81,7 +82,8 @@ CORRECTIONS = {
     "keep a -- why not b?": ["keep a // why not b?"],
     "keep a -- the player's": ["keep a // the player's"],
     "keep coins --3 > 1 a": [],
-    "keep coins ≠ 3": ["keep coins < 3 or coins > 3"],
+    "keep coins ≠ 3": [],
+    "keep coins ≠ 3.5": ["keep coins < 3.5 or coins > 3.5"],
     "keep a – b": [],
     # Numbers.
     "keep coins > 1,5": ["keep coins > 1.5"],

@@ -74,7 +74,7 @@ def equality(failure: ParseFailure) -> Diagnostic | None:
         text = f"({text})" if is_part and not at_end else text
         if at_end:
             boolean_text = ""
-        elif _may_be_int(failure, (start, at)):
+        elif b.isdecimal() and _may_be_int(failure, (start, at)):
             name = failure.tokens[start].text
             ends = ", ".join(declared_names(failure.source).names[name].ends)
             help_ = f"declare whole numbers as such: `signal {name}: int in [{ends}]`; then `{a} {sign} {b}` is right"
