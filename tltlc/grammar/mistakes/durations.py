@@ -37,12 +37,12 @@ _FORMS: Final = {
 }
 """Clauses for a time for which a formula holds, by the keyword of the clause and the comparison."""
 _LONG_ENOUGH: Final = (
-    "write `require always for {t} {p}` if it must hold from the first step on, "
-    "`keep begins {p} implies always for {t} {p}` each time that it begins, "
+    "write `require always for {written} {p}` if it must hold from the first step on, "
+    "`keep begins {p} implies always for {written} {p}` each time that it begins, "
     "`reach time_holding({p}) >= {t}` at some time"
 )
 _AFTER_CONDITION: Final = (
-    "write `always for {t} {p}` if it must hold from then on, "
+    "write `always for {written} {p}` if it must hold from then on, "
     "`time_holding({p}) {sign} {t}` if it must have held so far"
 )
 
@@ -67,7 +67,7 @@ def duration_in_words(failure: ParseFailure) -> Diagnostic | None:
         return failure.error("TLT0101", title, help_, span=tokens[at].span)
     operand = text_of(failure, *without_brackets(failure, second, at))
     if condition is not None and sign in (">=", ">"):
-        help_ = _AFTER_CONDITION.format(p=operand, t=time, sign=sign)
+        help_ = _AFTER_CONDITION.format(p=operand, t=time, sign=sign, written=written[0].text)
         return failure.error("TLT0101", title, help_, span=tokens[at].span)
     quantifiers = {word: f"{word} {head} " if head else "" for word in ("all", "any")}
     form = _FORMS.get((keyword, sign)) if condition is None else None
@@ -78,14 +78,17 @@ def duration_in_words(failure: ParseFailure) -> Diagnostic | None:
         f"`time_holding({operand})` is how long it has held: compare it, as in `time_holding({operand}) {sign} {time}`"
     )
     if keyword in ("keep", "require") and condition is None and not head:
-        help_ = _LONG_ENOUGH.format(p=operand_text(failure, begin, at), t=time)
+        help_ = _LONG_ENOUGH.format(p=operand_text(failure, begin, at), t=time, written=written[0].text)
     return failure.error("TLT0101", title, help_, span=tokens[at].span)
 
 
 def _in_seconds(failure: ParseFailure, time: Time) -> str | None:
-    """Return a time for a timer, or None if it is in steps that are no round number of seconds."""
+    """Return the time for which a timer counts, or None if it is no round number of seconds.
+
+    A timer counts from one sample to another: what holds for 10 steps has held for the time of 9.
+    """
     if time.is_real:
         return time.text
-    seconds = f"{float(time.number) * declared_names(failure.source).step_s:.6g}"
-    is_exact = abs(float(seconds) - float(time.number) * declared_names(failure.source).step_s) < 1e-12
-    return f"{seconds} s" if is_exact and float(seconds) else None
+    length = (float(time.number) - 1) * declared_names(failure.source).step_s
+    seconds = f"{length:.6g}"
+    return f"{seconds} s" if length > 0 and abs(float(seconds) - length) < 1e-12 else None
