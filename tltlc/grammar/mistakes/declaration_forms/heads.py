@@ -14,7 +14,7 @@ from tltlc.grammar.tables import load
 
 SPEC_WORDS: Final = frozenset(
     """
-    rule property prop_spec specification objective mission quest contract formula requirement constraint task
+    rule property specification objective mission quest contract formula requirement constraint task
     goal plan scenario behavior behaviour assert theorem
     """.split()
 )

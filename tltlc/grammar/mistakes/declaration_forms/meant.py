@@ -16,10 +16,10 @@ class MeantDeclaration:
     """What a piece of text that cannot be parsed is meant to declare.
 
     ``noun`` is what it declares: ``clock``, ``signal``, ``entity`` or ``spec``. ``lines`` are the declarations as they
-    should be written. ``read_as`` are the declarations with which the rest of the file is checked. It
-    has an assumed range where ``lines`` have a placeholder, and is empty if the author may have meant
-    different things. ``is_complete`` says whether ``lines`` can replace the text: nothing is left to
-    fill in or to choose. ``help`` replaces the usual "write …", ``reason`` is added to it.
+    should be written. ``read_as`` are the declarations with which the rest of the file is checked. They have an
+    assumed range where ``lines`` have a placeholder, and there are none if the author may have meant different
+    things. ``is_complete`` says whether ``lines`` can replace the text: nothing is left to fill in or to choose.
+    ``help`` replaces the usual "write …", and ``reason`` is added to it.
     """
 
     noun: str
@@ -54,12 +54,12 @@ class Cursor:
 
     def accept(self, *texts: str) -> bool:
         """Read the next token if it is one of ``texts``, ignoring capitals; return whether it is."""
-        found = not self.is_done and self.token.text.lower() in texts
-        self.at += found
-        return found
+        is_next = not self.is_done and self.token.text.lower() in texts
+        self.at += is_next
+        return is_next
 
     def accept_words(self, *words: str) -> bool:
         """Read the next tokens if they are these words, ignoring capitals; return whether they are."""
-        found = all(self.peek(distance).text.lower() == word for distance, word in enumerate(words))
-        self.at += len(words) * found
-        return found
+        are_next = all(self.peek(distance).text.lower() == word for distance, word in enumerate(words))
+        self.at += len(words) * are_next
+        return are_next

@@ -32,10 +32,10 @@ def read_range(cursor: Cursor) -> Range | None:
     stand once after both.
     """
     start = cursor.at
-    found = _two_ends(cursor) or _least_and_greatest(cursor)
-    if found is None:
+    ends = _two_ends(cursor) or _least_and_greatest(cursor)
+    if ends is None:
         cursor.at = start
-    return found
+    return ends
 
 
 def _two_ends(cursor: Cursor) -> Range | None:

@@ -73,24 +73,24 @@ def read_signals(tokens: Sequence[Token], text: Sequence[Token]) -> MeantDeclara
     is_named = cursor.accept(*SIGNAL_WORDS)
     if is_named and cursor.accept(":") and cursor.token.type != "NAME":
         return None
-    found: list[MeantDeclaration] = []
+    signals: list[MeantDeclaration] = []
     while not cursor.is_done:
-        meant = _signals(cursor, text, word, is_named or bool(found))
+        meant = _signals(cursor, text, word, is_named or bool(signals))
         if meant is None:
             return None
-        found.append(meant)
+        signals.append(meant)
         while cursor.accept(";", ","):
             pass
         cursor.accept(*SIGNAL_WORDS)
-    if not found:
+    if not signals:
         return None
     return MeantDeclaration(
         "signal",
-        tuple(line for meant in found for line in meant.lines),
-        tuple(line for meant in found for line in meant.read_as),
-        all(meant.is_complete for meant in found),
-        found[0].help if len(found) == 1 else "",
-        next((meant.reason for meant in found if meant.reason), ""),
+        tuple(line for meant in signals for line in meant.lines),
+        tuple(line for meant in signals for line in meant.read_as),
+        all(meant.is_complete for meant in signals),
+        signals[0].help if len(signals) == 1 else "",
+        next((meant.reason for meant in signals if meant.reason), ""),
     )
 
 
@@ -189,13 +189,13 @@ def _type(cursor: Cursor, first: _Type | None, is_named: bool) -> _Type | None:
             return _Type(values=values)
     elif cursor.token.text == ",":
         return _Type(type_)
-    found = whole_values(cursor) or read_range(cursor)
-    return _with_range(type_, found) if found else _Type(type_)
+    ends = whole_values(cursor) or read_range(cursor)
+    return _with_range(type_, ends) if ends else _Type(type_)
 
 
-def _with_range(type_: str, found: Range) -> _Type | None:
+def _with_range(type_: str, ends: Range) -> _Type | None:
     """Return a type with a range, whose unit may say more about the type."""
-    low, high, type_of_unit = found
+    low, high, type_of_unit = ends
     if type_ in ("", "number") and type_of_unit:
         type_ = type_of_unit
     if type_ == "int" and not all(end.lstrip("-").isdecimal() or end.endswith("inf") for end in (low, high)):
