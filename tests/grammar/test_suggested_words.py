@@ -24,7 +24,7 @@ def holds_only_after(trace: Trace) -> bool:
 
 MEANINGS: dict[str, Meaning] = {
     "reach a for at least 2 s": lambda t: longest(t) >= 2,
-    "reach a for at least 2 steps": lambda t: longest(t) >= 2,
+    "reach a for at least 2 steps": lambda t: longest(t) + 1 >= 2,
     "reach a for more than 2 seconds": lambda t: longest(t) > 2,
     "keep a for at most 2 s": lambda t: longest(t) <= 2,
     "require (a) for no more than 2 s": lambda t: longest(t) <= 2,
