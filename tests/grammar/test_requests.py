@@ -90,6 +90,65 @@ def first_error(clause: str, declarations: str) -> Diagnostic:
             "when seen then reach mode >= alert within 0.5 seconds",
             "keep seen implies eventually within 0.5 s (mode is alert or mode is chase)",
         ),
+        # Conditions, stretches of play, and what comes again.
+        ("racing", "while in_pit keep speed == 0 m/s", "keep in_pit implies speed <= 0 m/s"),
+        ("racing", "while in_pit avoid boosting || drifting", "avoid in_pit and (boosting or drifting)"),
+        ("racing", "if (in_pit) { avoid boosting }", "avoid in_pit and boosting"),
+        ("racing", "when off_track then keep off_track", "keep off_track implies always off_track"),
+        ("racing", "once finished, always finished", "keep finished implies always finished"),
+        (
+            "racing",
+            "once !finished: always !(boosting || drifting)",
+            "keep not finished implies always not (boosting or drifting)",
+        ),
+        (
+            "racing",
+            "after crashed avoid crashed for 1 s",
+            "avoid (begins crashed) then within 1 s (begins crashed)",
+        ),
+        (
+            "racing",
+            "avoid off_track between checkpoint1 and checkpoint2",
+            "keep begins checkpoint1 implies (not off_track weak_until checkpoint2)",
+        ),
+        (
+            "racing",
+            "between checkpoint1 and checkpoint2 keep boosting",
+            "keep begins checkpoint1 implies (boosting weak_until checkpoint2)",
+        ),
+        ("racing", "each boosting lasts at least 2 s", "keep begins boosting implies always for 2 s boosting"),
+        ("racing", "keep !braking at most 3 s", "keep time_holding(not braking) <= 3 s"),
+        ("racing", "never off_track for more than 10 steps in a row", "keep time_holding(off_track) < 1 s"),
+        ("racing", "at the end finished && !crashed", "require eventually always (finished and not crashed)"),
+        (
+            "racing",
+            "keep at most one of (boosting, braking, drifting)",
+            "avoid boosting and braking avoid boosting and drifting avoid braking and drifting",
+        ),
+        ("racing", "never finished without checkpoint1 before", "keep finished implies once checkpoint1"),
+        ("racing", "assert !boosting || crashed within last 2 s", "keep boosting implies once within 2 s crashed"),
+        # The functions and operators of code and of logic.
+        ("racing", "keep lap >= prev(lap)", "keep lap >= previous(lap)"),
+        ("racing", "keep (prev crashed && !crashed) => braking", "keep ends crashed implies braking"),
+        ("racing", "on rise(finished): lap == 3", "keep begins finished implies lap == 3"),
+        ("racing", "count(rising crashed) <= 2", "keep times(crashed) <= 2"),
+        ("racing", "assert lap >= 1 || !finished", "keep lap >= 1 or not finished"),
+        ("racing", "keep boosting == (lap > 2)", "keep boosting iff lap > 2"),
+        (
+            "racing",
+            "whenever crashed, eventually (braking ^ drifting) within 1 s",
+            "keep crashed implies eventually within 1 s (braking iff not drifting)",
+        ),
+        ("racing", "!finished U checkpoint1", "require not finished until checkpoint1"),
+        ("racing", "GF boosting && G !crashed", "require (always eventually boosting) and always not crashed"),
+        ("racing", "reach checkpoint1 and reach checkpoint2 in any order", "reach checkpoint1 reach checkpoint2"),
+        ("racing", "eventually finished and always speed < 90 m/s", "reach finished keep speed < 90 m/s"),
+        (
+            "stealth",
+            "keep seen implies mode != prev(mode)",
+            "keep seen implies (previously mode is calm and mode is not calm) or "
+            "(previously mode is alert and mode is not alert) or (previously mode is chase and mode is not chase)",
+        ),
     ],
 )
 def test_the_first_fix_of_a_sentence_has_its_meaning(declarations: str, typed: str, meant: str) -> None:
@@ -137,3 +196,33 @@ def test_an_event_that_is_asked_for_infinitely_often_needs_sessions_without_an_e
     (fix_,) = first_error("reach finished infinitely often", "racing").fixes
     (edit,) = fix_.edits
     assert edit.text.split("\n") == ["semantics infinite", "require always eventually finished"]
+
+
+@pytest.mark.parametrize(
+    ("typed", "help_"),
+    [
+        (
+            "when finished keep position <= 3",
+            "write `keep finished implies position <= 3` if `position <= 3` must hold at each step with `finished`, "
+            "`keep finished implies always position <= 3` if from then on",
+        ),
+        (
+            "when crashed avoid boosting",
+            "write `avoid crashed and boosting` to forbid `boosting` at each step with `crashed`, "
+            "`keep crashed implies always not boosting` to forbid it from then on",
+        ),
+        (
+            "when off_track then keep not off_track for 5 seconds",
+            "write `avoid (begins off_track) then within 5 s (begins off_track)` if it must not begin again in that "
+            "time, `keep ends off_track implies always for 5 s not off_track` if the time counts from its end",
+        ),
+    ],
+)
+def test_a_rule_for_one_step_or_from_then_on_gets_both_readings(typed: str, help_: str) -> None:
+    error = first_error(typed, "racing")
+    assert (error.help, error.fixes) == (help_, ())
+
+
+@pytest.mark.parametrize("typed", ["keep count(crashed) <= 2", "avoid crashed twice in a row", "finally finished"])
+def test_a_count_and_an_end_with_two_readings_get_no_fix(typed: str) -> None:
+    assert first_error(typed, "racing").fixes == ()

@@ -84,6 +84,7 @@ SYNONYMS: Final[dict[str, dict[str, str]]] = {
         "lose": "avoid",
         "fail": "avoid",
         "prevent": "avoid",
+        **dict.fromkeys(("assert", "invariant"), "keep"),
     },
     "test_item": {"assert": "expect"},
 }

@@ -126,11 +126,36 @@ def equality_error(expr: BinaryExpr, side: Expr, info: SignalInfo, other: Expr, 
     elif isinstance(other, NumberExpr) and other.unit is None and other.value in range(len(names)):
         value = names[int(other.value)]
         reason = f": `{value}` is the value with the number {int(other.value)}"
+    if isinstance(other, CallExpr) and other.name in _BEFORE and [source.slice(side.span)] == _arguments(other, env):
+        return _change_error(expr, source.slice(side.span), names, env)
     text = f"{source.slice(side.span)} {word} {value or names[0]}"
     fixes = (replacement_fix(source, expr.span, text, "safe"),) if value else ()
     title = f"`{expr.op}` compares numbers, and `{source.slice(side.span)}` is an enum"
     advice = f"write `{text}`{reason}" if value else f"write e.g. `{text}`: its values are {_listed(names)}"
     return problem("TLT0110", title, source, expr.span, advice=advice, fixes=fixes)
+
+
+_BEFORE = ("prev", "previous", "pre", "old", "previously")
+"""Functions for the value at the sample before."""
+
+
+def _arguments(call: CallExpr, env: Env) -> list[str]:
+    return [env.scope.source.slice(argument.span) for argument in call.arguments]
+
+
+def _change_error(expr: BinaryExpr, name: str, values: Sequence[str], env: Env) -> ResolutionError:
+    """Return the error for an enum that is compared with its value at the sample before."""
+    if expr.op == "==":
+        parts = [f"(previously {name} is {value} implies {name} is {value})" for value in values]
+    else:
+        parts = [f"(previously {name} is {value} and {name} is not {value})" for value in values]
+    text = f"({(' and ' if expr.op == '==' else ' or ').join(parts)})"
+    source = env.scope.source
+    title = f"`{expr.op}` compares numbers, and `{name}` is an enum"
+    advice = f"write `{text}`: an enum is compared with its values, one by one"
+    return problem(
+        "TLT0110", title, source, expr.span, advice=advice, fixes=(replacement_fix(source, expr.span, text),)
+    )
 
 
 def exclusive_values(

@@ -72,7 +72,8 @@ def lookup(use: NameExpr | CallExpr, env: Env, kinds: tuple[BindingKind, ...], n
     past = past_words.SYNONYMS.get(use.name) if isinstance(use, CallExpr) and len(use.arguments) == 1 else None
     if past and not closest_name(use.name, env.scope, kinds, env.local):
         word = past_words.FUNCTIONS.get(past) or past_words.OPERATORS[past]
-        raise problem("TLT0201", title, source, span, advice=f"`{word.forms[0]}` may be meant: {word.meaning}")
+        advice = f"`{word.forms[0]}` may be meant: {word.meaning}"
+        raise problem("TLT0201", title, source, span, advice=advice, fixes=_past_fixes(use, past, noun, env))
     spaced = _split_operator_letters(use.name, env, kinds) if gets_help and noun == "predicate" else None
     if spaced:
         raise problem(
@@ -103,6 +104,26 @@ def lookup(use: NameExpr | CallExpr, env: Env, kinds: tuple[BindingKind, ...], n
     if gets_help and (library or isinstance(use, NameExpr)):
         fixes = (Fix(f"{'Add' if library else 'Declare'} `{line}`", (declaration_edit(env.scope.module, line),)),)
     raise problem("TLT0201", title, source, span, advice=advice, fixes=fixes)
+
+
+def _past_fixes(use: NameExpr | CallExpr, word: str, noun: str, env: Env) -> tuple[Fix, ...]:
+    """Return the fix for a function of another language: `previous(x)` for a number, `previously p` for a bool.
+
+    A count has none: `count(p)` may count the samples with p.
+    """
+    argument = use.arguments[0].value if isinstance(use, CallExpr) else None
+    if not isinstance(use, CallExpr) or not isinstance(argument, NameExpr) or word == "times":
+        return ()
+    binding, source = env.scope.names.get(argument.name), env.scope.source
+    declaration = None if binding is None else binding.declaration
+    if not isinstance(declaration, SignalDecl) or declaration.values:
+        return ()
+    if noun == "predicate":
+        operator = "previously" if word == "previous" else word
+        is_clear = declaration.type == "bool" and operator in past_words.OPERATORS
+        return (replacement_fix(source, use.span, f"{operator} {argument.name}"),) if is_clear else ()
+    is_number = declaration.type != "bool" and word in ("previous", "highest", "lowest")
+    return (replacement_fix(source, use.name_span, word),) if is_number else ()
 
 
 _OTHERWISE = "declare it, e.g. `{}`, or import the library that has it"

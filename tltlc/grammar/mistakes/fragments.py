@@ -37,7 +37,10 @@ _STARTS: Final = {
 _PREFIXES: Final = (_STARTS - {"NAME", "STRING"}) | {"WHEN"}
 """Tokens that can begin a formula but not continue one."""
 _OPENING_WORDS: Final = frozenset(
-    "after once if when whenever while given within the player you must each every as following during unless".split()
+    (
+        "after once if when whenever while given within the player you must each every as following during unless "
+        "between"
+    ).split()
 )
 """Words that begin a sentence which may go on with the keyword of a clause on the same line."""
 _SCENARIO: Final = ("given", "when")

@@ -157,6 +157,9 @@ def _affirmative(words: Words) -> Answer | None:
     words = words.without([*SUBJECTS, *COPULAS])
     for known, kind in _BY_WORD:
         phrase = words.phrase(0, known)
+        timed = _timed(words[len(phrase) :]) if phrase and kind == "eventually" else None
+        if timed is not None and timed.kind == "within":
+            return timed
         if phrase:
             state = state_of(words[len(phrase) :].without(COPULAS))
             return None if state is None else Answer(kind, state)

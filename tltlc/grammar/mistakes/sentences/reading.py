@@ -8,20 +8,25 @@ from typing import Final
 from tltlc.core.record import replace
 from tltlc.core.source import SourceFile, Span
 from tltlc.diagnostics.diagnostic import Diagnostic, Edit, Fix, replacement_fix
-from tltlc.grammar import lalr, tree_checks
+from tltlc.grammar import lalr
 from tltlc.grammar.builder import Builder
 from tltlc.grammar.lexer import END, Token, tokenize
 from tltlc.grammar.mistakes.clauses import is_own_line
 from tltlc.grammar.mistakes.declared_names import declared_names
 from tltlc.grammar.mistakes.parse_failure import ParseFailure
 from tltlc.grammar.mistakes.rephrasing import span_of
+from tltlc.grammar.mistakes.sentences.calls import with_own_calls, without_braces
 from tltlc.grammar.mistakes.sentences.changes import CHANGES
 from tltlc.grammar.mistakes.sentences.goals import goal_of
+from tltlc.grammar.mistakes.sentences.kinds import is_event
+from tltlc.grammar.mistakes.sentences.logic import equality_fix, logic_fix
 from tltlc.grammar.mistakes.sentences.names import is_imperative, with_names
 from tltlc.grammar.mistakes.sentences.requests import request_of
 from tltlc.grammar.mistakes.sentences.rules import Clauses, rule_of
 from tltlc.grammar.mistakes.sentences.states import AND, state_of
+from tltlc.grammar.mistakes.sentences.stretches import stretch_rule_of
 from tltlc.grammar.mistakes.sentences.two_readings import both_readings
+from tltlc.grammar.mistakes.sentences.validity import is_valid
 from tltlc.grammar.mistakes.sentences.vocabulary import ENGLISH, FILLERS, NEVER, PROHIBITIONS, SUBJECTS
 from tltlc.grammar.mistakes.sentences.words import Words, phrases, words_of
 from tltlc.grammar.tables import load
@@ -66,11 +71,13 @@ def sentence_help(
         at = Span(failure.tokens[0].start, failure.tokens[0].start)
         fix = Fix("Write `//` before it", (Edit(at, "// "),))
         return replace(diagnostic, help="write `//` before it: a heading is a comment", fixes=(fix,))
+    if not diagnostic.fixes and (fix_ := logic_fix(failure) or equality_fix(failure)):
+        return replace(diagnostic, help=f"write `{fix_.edits[0].text}`", fixes=(fix_,))
     words = _words(failure)
     if words.word(0) == "require" or not (failure.tokens[0].text in _KEYWORDS or is_own_line(failure)):
         return diagnostic
     if not words.find(FILLERS):
-        is_spelt = with_names(words).text != words.text and _read(words) is not None
+        is_spelt = (with_names(words).text != words.text or _compares_bools(words)) and _read(words) is not None
         if diagnostic.fixes and _is_mended(failure, diagnostic.fixes[0]) and not is_spelt:
             return diagnostic
         if not diagnostic.fixes and failure.tokens[0].text in _KEYWORDS and is_explained:
@@ -79,6 +86,7 @@ def sentence_help(
                 is_spelt
                 or words.find(_CLEAR)
                 or _is_change(words)
+                or (words.word(0) == "avoid" and stretch_rule_of(words))
                 or (words.word(0) == "reach" and words.find(_RULES_BEHIND))
             )
             if not is_clear and not _is_quoted(_read(words), diagnostic.help or ""):
@@ -94,7 +102,7 @@ def sentence_help(
     text = " ".join(clauses)
     if text == " ".join(failure.source.slice(span).split()):
         return diagnostic  # the error is about a name or a value
-    if failure.lacks_fixed_clock(text) or not _is_valid(clauses):
+    if failure.lacks_fixed_clock(text) or not is_valid(clauses):
         return diagnostic
     quoted = " and ".join(f"`{clause}`" for clause in clauses)
     has_both = diagnostic.help is not None and quoted in diagnostic.help
@@ -143,6 +151,12 @@ def _is_quoted(clauses: Clauses | None, help_: str) -> bool:
     return any(clauses[0].endswith(text) for text in help_.split("`")[1::2] if " not " in text)
 
 
+def _compares_bools(words: Words) -> bool:
+    """Whether a sentence compares the name of a bool with a condition in brackets: `alive == (hp > 0)`."""
+    signs = [at for at, word in enumerate(words) if word.type == "EQUALS" and at]
+    return any(is_event(words[at - 1 : at]) and words[at + 1 : at + 2].text == "(" for at in signs)
+
+
 def _is_change(words: Words) -> bool:
     """Whether a sentence says how a number changes, and not by how much or to what value."""
     found = words.find(CHANGES)
@@ -175,7 +189,7 @@ def _words(failure: ParseFailure) -> Words:
     words = words_of(failure.source, declared_names(failure.source), failure.tokens[:-1], ENGLISH)
     while words and words[-1].text in (".", ";", "!") and len(words) > 1:
         words = words[:-1]
-    return _without_label(words)
+    return without_braces(with_own_calls(_without_label(words)))
 
 
 def _without_label(words: Words) -> Words:
@@ -210,12 +224,42 @@ def _request(words: Words) -> Clauses | None:
 
 
 def _sentence(words: Words) -> Clauses | None:
-    return _own_clause(words) or _joined(words) or rule_of(words) or goal_of(words)
+    return (
+        _own_clause(words) or _operators(words) or _goals(words) or _joined(words) or rule_of(words) or goal_of(words)
+    )
+
+
+def _operators(words: Words) -> Clauses | None:
+    """Return the clauses of `eventually a and always b`: one for each operator."""
+    parts = words.split(phrases("and"))
+    keywords = {"eventually": "reach", "always": "keep"}
+    if len(parts) < 2 or not all(part.word(0) in keywords for part in parts):
+        return None
+    states = [state_of(part[1:]) for part in parts]
+    known = [
+        f"{keywords[part.word(0)]} {state.text}" for part, state in zip(parts, states, strict=True) if state is not None
+    ]
+    return tuple(known) if len(known) == len(parts) else None
+
+
+def _goals(words: Words) -> Clauses | None:
+    """Return the clauses of `reach a and reach b`, perhaps with `in any order` behind them."""
+    end = words.find_last(phrases("in any order", "in whatever order"))
+    if end is not None and end[0] + len(end[1]) == len(words):
+        words = words[: end[0]]
+    parts = words.split(phrases("and reach", ", reach", ", and reach"))
+    if len(parts) < 2 or words.word(0) != "reach":
+        return None
+    states = [state_of(part.without([("reach",)])) for part in parts]
+    known = [state for state in states if state is not None]
+    return tuple(f"reach {state.text}" for state in known) if len(known) == len(states) else None
 
 
 def _own_clause(words: Words) -> Clauses | None:
     """Return a clause that can be parsed as it stands."""
-    return (words.text,) if words.word(0) in _KEYWORDS and _is_valid((words.text,)) else None
+    if _compares_bools(words):
+        return None
+    return (words.text,) if words.word(0) in _KEYWORDS and is_valid((words.text,)) else None
 
 
 def _joined(words: Words) -> Clauses | None:
@@ -261,18 +305,3 @@ def _unconditional(words: Words) -> Clauses | None:
         return goal
     is_plain = words.word(0) in ("avoid", "no") or bool(words.phrase(0, NEVER))
     return rule_of(words) if is_plain else None
-
-
-def _is_valid(clauses: Clauses) -> bool:
-    """Whether clauses can be parsed."""
-    for clause in clauses:
-        source = SourceFile("", clause, "text")
-        lexed = tokenize(clause)
-        builder = Builder(source, lexed.docs)
-        try:
-            node = lalr.run(load(), "clause", lexed.tokens, builder)
-        except lalr.UnexpectedTokenError:
-            return False
-        if [*builder.diagnostics, *tree_checks.check_clause(source, node)]:
-            return False
-    return True

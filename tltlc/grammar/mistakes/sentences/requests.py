@@ -5,9 +5,10 @@ from __future__ import annotations
 from typing import Final
 
 from tltlc.grammar.mistakes.sentences.goals import goal_of, single_goal
+from tltlc.grammar.mistakes.sentences.kinds import is_event
 from tltlc.grammar.mistakes.sentences.names import is_goal_verb
 from tltlc.grammar.mistakes.sentences.rules import Clauses, condition_of, rule_of
-from tltlc.grammar.mistakes.sentences.states import AND, ATOM, State, holding_of, is_event, joined, state_of
+from tltlc.grammar.mistakes.sentences.states import AND, ATOM, State, holding_of, joined, state_of
 from tltlc.grammar.mistakes.sentences.stems import parts_of, stem
 from tltlc.grammar.mistakes.sentences.vocabulary import (
     COPULAS,

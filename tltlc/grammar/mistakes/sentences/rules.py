@@ -6,27 +6,17 @@ from typing import Final
 
 from tltlc.core.record import replace
 from tltlc.grammar.mistakes.sentences.answers import Answer, answer_of, clause_of
+from tltlc.grammar.mistakes.sentences.kinds import is_event, is_value
+from tltlc.grammar.mistakes.sentences.limits import bounded_count, bounded_time
 from tltlc.grammar.mistakes.sentences.spans import span_rule_of
-from tltlc.grammar.mistakes.sentences.states import (
-    ATOM,
-    OR,
-    RULE,
-    State,
-    count_of,
-    holding_of,
-    is_event,
-    is_value,
-    joined,
-    state_of,
-)
+from tltlc.grammar.mistakes.sentences.states import ATOM, OR, RULE, State, count_of, holding_of, joined, state_of
+from tltlc.grammar.mistakes.sentences.stretches import stretch_rule_of
 from tltlc.grammar.mistakes.sentences.vocabulary import (
     ALWAYS,
     AT_ONCE,
-    COMPARISONS,
     COPULAS,
     FROM_THEN,
     MODALS,
-    NEGATED_SIGN,
     NEVER,
     ONLY_AFTER,
     ONLY_WHEN,
@@ -44,13 +34,16 @@ COUNTED: Final = frozenset(("times", "time_since", "time_holding"))
 _BECOMES: Final = phrases("becomes", "turns", "changes to", "turns to", "starts", "begins", "goes to", "switches to")
 _LASTING: Final = phrases("while", "during", "as long as", "so long as", "for as long as")
 """Words before a condition that may have to hold until a goal is reached."""
+_EACH: Final = (*_LASTING, *phrases("whenever", "every time", "each time", "any time", "anytime"))
+"""Words before a condition, at each step of which what follows must hold."""
 _EITHER: Final = phrases("while", "during")
 """Words between an event and a condition that may say a goal, or a rule."""
 
 
 def rule_of(words: Words) -> Clauses | None:
     """Return the clauses for a rule in English, or None if the words are no rule, or it is unclear which."""
-    for read in (span_rule_of, _scenario, _implication, _condition_first, _condition_last, _unconditional):
+    readers = (span_rule_of, stretch_rule_of, _scenario, _implication, _condition_first, _condition_last)
+    for read in (*readers, _unconditional):
         clauses = read(words)
         if clauses is not None:
             return clauses
@@ -111,6 +104,8 @@ def _steps(words: Words) -> Words:
 
 def _implication(words: Words) -> Clauses | None:
     """Return the rule of `keep a implies b within 5 s`, whose answer is in the words of English."""
+    is_always = words.word(0) == "always" and words.word(1) in ("begins", "ends")
+    words = words[1:] if is_always else words  # an event that always holds is hardly meant
     parts = words.without([("keep",)]).split([("implies",), ("=", ">")])
     if len(parts) != 2 or words.word(0) == "not" or parts[1].phrase(0, NEVER):
         return None
@@ -133,7 +128,8 @@ def _condition_first(words: Words) -> Clauses | None:
             continue
         if answer.keyword == "keep" and answer.kind not in ("now", "lasting", "always"):
             return None  # `after a, keep b within 5 s` may ask for one step, or for all of that time
-        return _answered(event, answer, is_from_then=phrase in FROM_THEN)
+        is_each = phrase in (_EACH if answer.kind == "now" else _LASTING)
+        return _answered(event, answer, is_from_then=phrase in FROM_THEN, is_each=is_each)
     return None
 
 
@@ -160,13 +156,24 @@ def _borders(words: Words, first: int) -> list[tuple[int, int]]:
     return [(known[0], known[0])] if len(known) == 1 else []
 
 
-def _answered(event: State, answer: Answer, *, is_from_then: bool) -> Clauses | None:
-    """Return the rule that asks for an answer, if the kind of the condition leaves one reading."""
+def _answered(event: State, answer: Answer, *, is_from_then: bool, is_each: bool = False) -> Clauses | None:
+    """Return the rule that asks for an answer, if the kind of the condition leaves one reading.
+
+    ``is_from_then`` says that the condition is an event that comes before, ``is_each`` that the answer is about
+    the steps with the condition alone.
+    """
     is_reached = answer.keyword == "reach"
     conditions = event.text.split(" and ")
     is_ending = answer.state.negated().text in conditions
     if answer.kind == "lasting" and answer.state == event:
         return (f"keep begins {event.at(ATOM)} implies always for {answer.time} {answer.state.at(ATOM)}",)
+    if is_ending and is_from_then and answer.kind == "lasting" and answer.is_negative:
+        begins = f"(begins {event.at(ATOM)})"
+        return (f"avoid {begins} then within {answer.time} {begins}",)
+    if answer.state == event and (answer.kind == "always" or (answer.keyword == "keep" and answer.kind == "now")):
+        return (f"keep {event.at(OR)} implies always {event.at(ATOM)}",)
+    if is_each and answer.kind in ("now", "always") and not is_ending and (answer.keyword or answer.is_negative):
+        return (clause_of(event, replace(answer, kind="now")),)
     if answer.state == event or (is_ending and not is_reached and answer.kind not in ("within", "next")):
         return None  # an event that answers itself begins again
     if answer.is_open and not is_ending:
@@ -179,7 +186,7 @@ def _answered(event: State, answer: Answer, *, is_from_then: bool) -> Clauses | 
         # Without `after`, b may have to hold at that step alone. A count is that of all steps.
         is_clear = is_from_then and not COUNTED.intersection(answer.state.text.replace("(", " ").split())
         return (clause_of(event, replace(answer, kind="always")),) if is_clear else None
-    if is_from_then and answer.kind == "now":
+    if is_from_then and answer.kind == "now" and not answer.state.text.startswith("(not "):
         return None  # at that step, or from then on
     if not is_from_then and answer.kind == "always":
         return None  # always while the condition holds, or from then on
@@ -306,70 +313,29 @@ def _is_rule(words: Words) -> bool:
     """Whether words say that they are a rule, as `keep` does, and `must` or `always` after what they are about."""
     words = words.without(SUBJECTS)
     found = words.find([*MODALS, *ALWAYS])
-    return words.word(0) in ("keep", "ensure") or (found is not None and found[0] > 0)
+    return words.word(0) in ("keep", "ensure", "assert", "invariant") or (found is not None and found[0] > 0)
 
 
 def _unconditional(words: Words) -> Clauses | None:
     """Return a rule about every step: a prohibition, a bound of a count, of a time or of a value."""
     words = words.without(SUBJECTS)
-    for limited in (_bounded_count(words), _bounded_time(words)):
+    for limited in (bounded_count(words), bounded_time(words)):
         if limited is not None:
             return limited
     prohibited = _prohibited(words)
     if prohibited is not None:
         return (f"avoid {prohibited.text}",)
+    if len(words) == 3 and words[0].text.startswith("times(") and words[1].text in ("<", "<=") and words.number(2):
+        return (f"keep {words.text}",)
     return _kept(words)
-
-
-def _bounded_count(words: Words) -> Clauses | None:
-    """Return the rule of `died at most 3 times`, `avoid died more than 3 times`, `exactly 1 takedown`."""
-    keyword = words.phrase(0, [*PROHIBITIONS, *MODALS, ("keep",), ("reach",)])
-    is_forbidden = keyword in PROHIBITIONS
-    rest = words[len(keyword) :]
-    count = count_of(rest) or count_of(rest.without([*SUBJECTS, *COPULAS]))
-    if count is None:
-        middle = words.find([*NEVER, *MODALS])
-        if middle is None or not middle[0] or not is_event(words[: middle[0]]):
-            return None
-        is_forbidden = middle[1] in NEVER
-        after = words[middle[0] + len(middle[1]) :].without(COPULAS)
-        phrase = after.phrase(0, COMPARISONS)
-        number = after.number(len(phrase))
-        if not phrase or not number or after.word(len(phrase) + 1) not in ("time", "times"):
-            return None
-        count = (State(words[: middle[0]].text), COMPARISONS[phrase], number)
-    (event, sign, number) = count
-    if is_forbidden:
-        sign = NEGATED_SIGN.get(sign or ">=", "")
-    if sign in ("<=", "<"):
-        is_zero = (sign, number) in (("<=", "0"), ("<", "1"))
-        return (f"avoid {event.text}",) if is_zero else (f"keep times({event.text}) {sign} {number}",)
-    if sign in (">=", ">"):
-        return (f"reach times({event.text}) {sign} {number}",)
-    if number == "0" and sign in ("", "=="):
-        return (f"avoid {event.text}",)
-    if sign == "==":
-        return f"reach times({event.text}) >= {number}", f"keep times({event.text}) <= {number}"
-    return None
-
-
-def _bounded_time(words: Words) -> Clauses | None:
-    """Return the rule of `dashing for at most 0.5 s`, `avoid off_track for longer than 2 s`."""
-    keyword = words.phrase(0, [*PROHIBITIONS, *MODALS, ("keep",)])
-    is_forbidden = keyword in PROHIBITIONS
-    holding = holding_of(words[len(keyword) :])
-    if holding is None:
-        return None
-    state, sign, time = holding
-    sign = NEGATED_SIGN.get(sign, "") if is_forbidden else sign
-    return (f"keep time_holding({state.text}) {sign} {time}",) if sign in ("<", "<=") else None
 
 
 def _kept(words: Words) -> Clauses | None:
     """Return the rule of `a must always hold`, `keep a between 3 and 5`, `all guards must be asleep`."""
     if not _is_rule(words):
         return None
-    words = words.without([*MODALS, ("keep",), ("ensure",)])
+    words = words.without([*MODALS, *phrases("keep", "ensure", "assert", "invariant")])
+    is_code = words.has_signs
     if words.word(0) == "that":
         words = words[1:]
     for known in ((*((*modal, *word) for modal in MODALS for word in ALWAYS), *MODALS), ALWAYS):
@@ -378,5 +344,5 @@ def _kept(words: Words) -> Clauses | None:
             words = words[: found[0]].followed_by(words[found[0] + len(found[1]) :])
     state = state_of(words)
     # `keep a and b is not true` has several readings.
-    is_one = state is not None and (state.level in (ATOM, RULE) or words.find([("between",)]))
+    is_one = state is not None and (state.level in (ATOM, RULE) or is_code or words.find([("between",)]))
     return (f"keep {state.text}",) if state is not None and is_one else None

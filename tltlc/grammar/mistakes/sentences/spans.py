@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import Final
 
-from tltlc.grammar.mistakes.sentences.states import ATOM, OR, State, count_of, is_event, state_of
+from tltlc.grammar.mistakes.sentences.kinds import is_event
+from tltlc.grammar.mistakes.sentences.states import ATOM, OR, State, count_of, state_of
 from tltlc.grammar.mistakes.sentences.vocabulary import ALWAYS, COPULAS, FIRST_WITHIN, MODALS, NEVER, SUBJECTS
 from tltlc.grammar.mistakes.sentences.words import Words, phrases
 

@@ -7,6 +7,15 @@ from typing import Final
 
 from tltlc.core.record import record
 from tltlc.grammar.mistakes.sentences.changes import change_of, loss_of
+from tltlc.grammar.mistakes.sentences.kinds import (
+    call_end,
+    is_arithmetic,
+    is_bool,
+    is_event,
+    is_number,
+    is_quantity,
+    is_value,
+)
 from tltlc.grammar.mistakes.sentences.vocabulary import (
     AT_ONCE,
     COMPARISONS,
@@ -24,7 +33,6 @@ ATOM, AND, OR, RULE = range(4)
 
 _SIGNS: Final = {"LESS": "<", "AT_MOST": "<=", "MORE": ">", "AT_LEAST": ">=", "EQUALS": "==", "UNEQUAL": "!="}
 _PAST: Final = ("once", "historically", "previously", "begins", "ends")
-_NUMERIC: Final = ("number", "int", "ratio", "length", "time", "speed", "angle")
 _TIMES: Final = phrases("times", "time", "x")
 _COUNTED: Final = (*COMPARISONS, ("exactly",), ("once",), ("twice",), ("thrice",))
 _OFTEN: Final = {"once": "1", "twice": "2", "thrice": "3"}
@@ -76,21 +84,13 @@ def state_of(words: Words) -> State | None:
             first = [item for part in parts[:-1] for item in part.split(phrases(","))]
             return _all_of([state_of(part) for part in _with_subject((*first, parts[-1]))], operator)
     if not_ := words.phrase(0, NOT):
-        inner = state_of(words[len(not_) :])
-        return None if inner is None or inner.level != ATOM else inner.negated()
+        rest = words[len(not_) :]
+        inner = state_of(rest)
+        is_whole = inner is not None and (inner.level == ATOM or (bool(rest) and _is_in_brackets(rest)))
+        return inner.negated() if inner is not None and is_whole else None
+    if len(sides := words.split([("^",)])) == 2:
+        return _exclusive(*sides)
     return _atom(words)
-
-
-def is_event(words: Words) -> bool:
-    """Whether words are the name of a signal or predicate that is true or false, perhaps with arguments."""
-    return bool(words) and _is_bool(words, 0) and call_end(words, 0) == len(words)
-
-
-def is_value(words: Words) -> bool:
-    """Whether words are the name of a number or of an enum, perhaps with arguments."""
-    declared = words.declared(0) if words else None
-    is_known = declared is not None and declared.type in (*_NUMERIC, "enum")
-    return is_known and call_end(words, 0) == len(words)
 
 
 def count_of(words: Words) -> tuple[State, str, str] | None:
@@ -107,7 +107,7 @@ def count_of(words: Words) -> tuple[State, str, str] | None:
     end = call_end(words, 0)
     if is_value(words[:end]):
         end = next((at for at in range(end, len(words)) if words[at:].phrase(0, _COUNTED)), len(words))
-    counted = State(words[:end].text) if _is_bool(words, 0) else state_of(words[:end]) if end < len(words) else None
+    counted = State(words[:end].text) if is_bool(words, 0) else state_of(words[:end]) if end < len(words) else None
     if counted is None or counted.level != ATOM:
         return None
     rest = words[end:].without(COPULAS)
@@ -125,9 +125,12 @@ def holding_of(words: Words) -> tuple[State, str, str] | None:
     found = words.find_last([("for",)])
     if found is None:
         end = call_end(words, 0)
-        if not is_event(words[:end]):
+        if is_event(words[:end]):
+            at, start = end, end + len(words.phrase(end, phrases("lasts", "last")))
+        elif words.phrase(0, NOT) and (compared := words.find(COMPARISONS)) is not None:
+            at = start = compared[0]
+        else:
             return None
-        at, start = end, end + len(words.phrase(end, phrases("lasts", "last")))
     else:
         at, start = found[0], found[0] + 1
     phrase = words.phrase(start, [*COMPARISONS, ("exactly",)])
@@ -175,6 +178,14 @@ def _all_of(states: list[State | None], operator: str) -> State | None:
     return joined(known, operator) if len(known) == len(states) else None
 
 
+def _exclusive(left: Words, right: Words) -> State | None:
+    """Return the condition of `a ^ b`, where one of two conditions holds, and the other does not."""
+    a, b = state_of(left), state_of(right)
+    if a is None or b is None:
+        return None
+    return joined([joined([a, b.negated()], "and"), joined([b, a.negated()], "and")], "or")
+
+
 def _negation(words: Words) -> State | None:
     state = state_of(words)
     return None if state is None else state.negated()
@@ -187,9 +198,9 @@ def _between(words: Words) -> State | None:
     left, right = words[: found[0]], words[found[0] + 1 :]
     ends = right.split(phrases("and"))
     end = call_end(left, 0) if left else 0
-    if len(ends) != 2 or not left or left[end:].without(COPULAS) or not _is_number(left, 0):
+    if len(ends) != 2 or not left or left[end:].without(COPULAS) or not is_number(left, 0):
         return None
-    if not all(_is_value(side) for side in ends):
+    if not all(is_quantity(side) for side in ends):
         return None
     name = left[:end].text
     return State(f"{name} >= {ends[0].text} and {name} <= {ends[1].text}", AND)
@@ -204,29 +215,45 @@ def _atom(words: Words) -> State | None:
         inner = None if window and time is None else state_of(words[start:])
         bound = f" {words.word(1)} {time[0].text}" if time else ""
         return None if inner is None else State(f"{words[0].text}{bound} {inner.at(ATOM)}")
-    return _of_number(words) or _of_bool(words) or _of_enum(words) or _of_group(words)
+    return _in_the_last(words) or _of_number(words) or _of_bool(words) or _of_enum(words) or _of_group(words)
+
+
+def _in_the_last(words: Words) -> State | None:
+    """Return the condition of `seen within the last 2 s`."""
+    found = words.find_last(phrases("within last", "within the last", "in the last", "in last"))
+    time = None if found is None else words.time(found[0] + len(found[1]))
+    if found is None or time is None or time[1] != len(words) or not found[0]:
+        return None
+    inner = state_of(words[: found[0]])
+    return None if inner is None else State(f"once within {time[0].text} {inner.at(ATOM)}")
 
 
 def _of_number(words: Words) -> State | None:
     """Return a comparison of numbers, with a sign or in words: `health < 20`, `at least 3 coins`, `lap 2`."""
     sign = next((i for i in words.outer() if words[i].type in _SIGNS), None)
-    if sign is not None and sign > 0 and _is_arithmetic(words[:sign]) and _is_arithmetic(words[sign + 1 :]):
-        return State(words.text, ATOM, _opposite(words[:sign].text, _SIGNS[words[sign].type], words[sign + 1 :].text))
+    if sign is not None and sign > 0 and is_arithmetic(words[:sign]) and is_arithmetic(words[sign + 1 :]):
+        left, right = words[:sign].text, words[sign + 1 :].text
+        declared = words.declared(0) if sign == 1 else None
+        is_int = declared is None or declared.type == "int"
+        ends = () if is_int or declared is None else tuple(end.replace(" / ", "/") for end in declared.ends)
+        if words[sign].type == "EQUALS" and right in ends:
+            return _comparison(left, ">=" if right == ends[1] else "<=", right)
+        return State(words.text, ATOM, _opposite(left, _SIGNS[words[sign].type], right))
     phrase = words.phrase(0, [*COMPARISONS, ("exactly",)])
-    if (phrase or words[0].type == "NUMBER") and _is_number(words, len(words) - 1) and len(words) == len(phrase) + 2:
+    if (phrase or words[0].type == "NUMBER") and is_number(words, len(words) - 1) and len(words) == len(phrase) + 2:
         number = words.number(len(phrase))
         relation = COMPARISONS.get(phrase, "==" if phrase else ">=")
         return _comparison(words[-1].text, relation, number) if number else None
-    if len(words) == 2 and is_value(words[1:]) and _is_number(words, 1) and (lost := loss_of(words)):
+    if len(words) == 2 and is_value(words[1:]) and is_number(words, 1) and (lost := loss_of(words)):
         return _comparison(words[1].text, lost, f"previous({words[1].text})")
-    if not _is_number(words, 0):
+    if not is_number(words, 0):
         return None
     end = call_end(words, 0)
     value, rest = words[:end].text, words[end:]
     copula = rest.phrase(0, COPULAS)
     for start in {len(copula), 0}:
         phrase = rest.phrase(start, COMPARISONS)
-        if phrase and _is_value(rest[start + len(phrase) :]):
+        if phrase and is_quantity(rest[start + len(phrase) :]):
             return _comparison(value, COMPARISONS[phrase], rest[start + len(phrase) :].text)
     declared = words.declared(0)
     kind = "" if declared is None else declared.type
@@ -261,11 +288,13 @@ def _full(words: Words, ends: tuple[str, ...]) -> str:
 def _of_bool(words: Words) -> State | None:
     """Return a signal or predicate that is true or false, perhaps with `is true`, or a count of one."""
     end = call_end(words, 0)
-    if not _is_bool(words, 0):
+    if not is_bool(words, 0):
         return None
     state, rest = State(words[:end].text), words[end:]
     if len(rest) == len(rest.phrase(0, COPULAS)):
         return state
+    if rest[0].type == "EQUALS" and rest[1:] and _is_in_brackets(rest[1:]) and (other := state_of(rest[1:])):
+        return State(f"{state.text} iff {other.at(OR)}", RULE)
     verb = rest.phrase(0, [*EQUALITIES, *COPULAS, *UNEQUAL])
     if verb and len(rest) == len(verb) + 1 and rest.word(len(verb)) in ("true", "false"):
         is_negated = (verb in UNEQUAL) != (rest.word(len(verb)) == "false")
@@ -321,7 +350,7 @@ def _of_group(words: Words) -> State | None:
     call = f"{body[0].text}({variable})"
     if len(body) == 1 and predicate.type in ("bool", ""):
         return State(f"{quantifier} {variable} in {rest[0].text}: {call}", RULE)
-    if len(body) > 2 and body[1].type in _SIGNS and _is_value(body[2:]):
+    if len(body) > 2 and body[1].type in _SIGNS and is_quantity(body[2:]):
         return State(f"{quantifier} {variable} in {rest[0].text}: {call} {body[1:].text}", RULE)
     return None
 
@@ -332,46 +361,3 @@ def _comparison(left: str, sign: str, right: str) -> State:
 
 def _opposite(left: str, sign: str, right: str) -> str:
     return f"{left} {NEGATED_SIGN[sign]} {right}" if sign in NEGATED_SIGN else ""
-
-
-def call_end(words: Words, at: int) -> int:
-    """Return the index after the name at an index and its arguments."""
-    if at + 1 >= len(words) or words[at + 1].text != "(":
-        return min(at + 1, len(words))
-    depth = 0
-    for index in range(at + 1, len(words)):
-        depth += (words[index].text == "(") - (words[index].text == ")")
-        if depth == 0:
-            return index + 1
-    return len(words)
-
-
-def _is_bool(words: Words, at: int) -> bool:
-    declared = words.declared(at)
-    if declared is None:
-        return at < len(words) and words[at].is_name and words[at].text not in ("times", "time_since", "time_holding")
-    is_called = at + 1 < len(words) and words[at + 1].text == "("
-    if bool(declared.parameters) != is_called:
-        return False
-    return declared.type == "bool" or declared.keyword in ("predicate", "let")
-
-
-def _is_number(words: Words, at: int) -> bool:
-    declared = words.declared(at)
-    is_function = at < len(words) and words[at].text in ("times", "time_since", "time_holding")
-    return is_function or (declared is not None and declared.type in _NUMERIC)
-
-
-def _is_value(words: Words) -> bool:
-    """Whether words are a number, perhaps with a unit, or the name of a number."""
-    if len(words) == 1 and _is_number(words, 0):
-        return True
-    return bool(words) and bool(words.number(0)) and all(word.type in ("UNIT", "DIVIDE", "NAME") for word in words[1:])
-
-
-def _is_arithmetic(words: Words) -> bool:
-    """Whether words are numbers, names of numbers, signs and brackets alone."""
-    known = ("NUMBER", "UNIT", "PLUS", "MINUS", "TIMES_SIGN", "DIVIDE", "LPAR", "RPAR", "COMMA")
-    return bool(words) and all(
-        word.type in known or _is_number(words, at) or word.text in words.names.names for at, word in enumerate(words)
-    )

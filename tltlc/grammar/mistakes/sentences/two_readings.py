@@ -6,14 +6,16 @@ from typing import Final
 
 from tltlc.grammar.mistakes.counts_in_words import COUNT_ELSEWHERE
 from tltlc.grammar.mistakes.sentences.answers import answer_of
+from tltlc.grammar.mistakes.sentences.kinds import call_end
 from tltlc.grammar.mistakes.sentences.rules import COUNTED, condition_of
-from tltlc.grammar.mistakes.sentences.states import ATOM, OR, State, call_end, state_of
+from tltlc.grammar.mistakes.sentences.states import ATOM, OR, State, state_of
 from tltlc.grammar.mistakes.sentences.vocabulary import (
     COMPARISONS,
     COPULAS,
     EQUALITIES,
     FROM_THEN,
     MODALS,
+    SAME_STEP,
     SUBJECTS,
     UNEQUAL,
     VERBS,
@@ -25,6 +27,14 @@ _NEEDS: Final = phrases("requires", "needs", "depends on", "is required for")
 _FROM_THEN: Final = (
     "write `keep {b} implies {a}` if `{a}` must hold at each step with `{b}`, "
     "`keep {b} implies always {a}` if from then on"
+)
+_WHEN_AVOID: Final = (
+    "write `avoid {b} and {a}` to forbid `{a}` at each step with `{b}`, `keep {b} implies always not {a}` "
+    "to forbid it from then on"
+)
+_AGAIN: Final = (
+    "write `avoid (begins {b}) then within {time} (begins {b})` if it must not begin again in that time, "
+    "`keep ends {b} implies always for {time} {a}` if the time counts from its end"
 )
 _BEFORE: Final = (
     "write `reach {a} then {b}` if both must happen, in this order, "
@@ -61,6 +71,8 @@ def both_readings(words: Words) -> str | None:
     first = words.phrase(0, FROM_THEN)
     if first:
         return _after(words, first)
+    if first := words.phrase(0, SAME_STEP):
+        return _when(words, first)
     if (goals := _goals(words)) is not None:
         return goals
     for known, form in (
@@ -113,6 +125,24 @@ def _after(words: Words, first: Phrase) -> str | None:
         event = condition.at(OR) if condition is not None else "b"
         return _AFTER.format(b=event, word=" ".join(first))
     return readings
+
+
+def _when(words: Words, first: Phrase) -> str | None:
+    """Return the help for `when a keep b` and `when a avoid b`: at each step with a, or from the first on."""
+    keyword = words.find([("keep",), ("avoid",)], len(first))
+    if keyword is None:
+        return None
+    border = words[keyword[0] - 1]
+    end = keyword[0] - (border.text in (",", ":", "then"))
+    event, rest = condition_of(words[len(first) : end]), words[keyword[0] + 1 :]
+    if keyword[1] == ("avoid",):
+        return _help(_WHEN_AVOID, state_of(rest), event)
+    answer = answer_of(rest)
+    if event is None or answer is None or event.level > ATOM:
+        return None
+    if answer.kind == "lasting" and answer.state == event.negated():
+        return _AGAIN.format(b=event.text, time=answer.time, a=answer.state.at(ATOM))
+    return _help(_FROM_THEN, answer.state, event) if answer.kind == "now" else None
 
 
 def _small_goal(words: Words) -> str | None:

@@ -92,6 +92,11 @@ class Words(Sequence[Word]):
     def _spelling(self, word: Word) -> str:
         return word.text if word.is_renamed else self._source.text[word.start : word.end]
 
+    @property
+    def has_signs(self) -> bool:
+        """Whether `and` and `or` are written as signs, as in `a && b`."""
+        return any(word.type in ("AND", "OR") and not self._spelling(word)[0].isalpha() for word in self._words)
+
     def word(self, at: int) -> str:
         """Return the English word at an index; "" for a name, and outside the sentence."""
         return "" if not 0 <= at < len(self) or self[at].is_name else self[at].text
