@@ -113,7 +113,7 @@ def test_a_quantified_formula_is_reported_once() -> None:
 )
 def test_the_suggestion_is_no_goal_that_a_false_condition_meets(clause: str, goal: str) -> None:
     (finding,) = (candidate for candidate in findings_in(block(clause)) if candidate.diagnostic.code == "TLT0424")
-    assert (finding.diagnostic.help or "").partition(" write `semantics infinite`")[2] == goal
+    assert (finding.diagnostic.help or "").partition(": then no trace that ends violates it")[2] == goal
 
 
 @pytest.mark.parametrize(
@@ -127,9 +127,6 @@ def test_the_suggestion_is_no_goal_that_a_false_condition_meets(clause: str, goa
         ("require b implies G F (a or c)", "write `eventually (a or c)`"),
         ("reach b then (c and G not G a)", "write `eventually not a`"),
         ("require b implies G (c and F a)", "take it out of the `always`"),
-        ("require G (a until b)", "write `require a until b`"),
-        ("keep c and (a until b)", "write `require a until b`"),
-        ("require b implies G (a until c)", "write `(a until c)`"),
         ("require b implies G (c and (a until b))", "take it out of the `always`"),
     ],
 )
@@ -138,6 +135,23 @@ def test_the_suggestion_keeps_the_rest_of_the_clause(clause: str, advice: str) -
         finding.diagnostic.help for finding in findings_in(block(clause)) if finding.diagnostic.code == "TLT0424"
     )
     assert (help_ or "").partition("if once is enough, ")[2] == advice
+
+
+@pytest.mark.parametrize(
+    ("clause", "strong", "weak"),
+    [
+        ("require G (a until b)", "require a until b", "require a weak_until b"),
+        ("keep c and (a until b)", "require a until b", "require a weak_until b"),
+        ("keep not a until b", "require not a until b", "require not a weak_until b"),
+        ("require b implies G (a until c)", "(a until c)", "(a weak_until c)"),
+    ],
+)
+def test_an_until_at_every_step_gets_both_readings(clause: str, strong: str, weak: str) -> None:
+    (help_,) = (
+        finding.diagnostic.help for finding in findings_in(block(clause)) if finding.diagnostic.code == "TLT0424"
+    )
+    assert help_ is not None
+    assert help_.split("`")[1::2][::3] == [strong, weak]
 
 
 def test_the_suggestion_fits_a_spec_or_let_without_clauses() -> None:

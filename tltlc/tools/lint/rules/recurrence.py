@@ -94,13 +94,25 @@ def _findings(
                 Span(begin, part.op_span.end),
                 f"required at every step, so `{goal}` must hold at the last one",
             )
-            until = ScopedExpression(part, view.env)
-            advice = "take it out of the `always`"
-            if is_clause:
-                advice = f"write `require {until.text}`"
-            elif part is whole:
-                advice = f"write `{operand_text(until)}`"
-            yield RuleFinding("this `until` starts again at every step", (label,), f"if once is enough, {advice}")
+            advice = "if once is enough, take it out of the `always`"
+            if is_clause or part is whole:
+                advice = _either_until(part, view, goal, is_clause=is_clause)
+            yield RuleFinding("this `until` starts again at every step", (label,), advice)
+
+
+def _either_until(part: BinaryExpr, view: FileView, goal: str, *, is_clause: bool) -> str:
+    """Return advice on what to write in place of `G (a U b)`: an until where b must come, and a weak one."""
+    strong = ScopedExpression(part, view.env)
+    left, right = (operand_text(ScopedExpression(side, view.env)) for side in (part.left, part.right))
+    weak = f"{left} weak_until {right}"
+    if is_clause:
+        strong_text, weak_text = f"require {strong.text}", f"require {weak}"
+    else:
+        strong_text, weak_text = operand_text(strong), f"({weak})"
+    return (
+        f"write `{strong_text}` if it must hold once, until `{goal}` comes, and `{goal}` must come; "
+        f"`{weak_text}` if `{goal}` need not come"
+    )
 
 
 def _once(awaited: ScopedExpression, sign: bool, outer: str, word: str, *, is_whole: bool, is_clause: bool) -> str:
@@ -133,7 +145,7 @@ def _finding(place: Span, op: str, awaited: ScopedExpression, sign: bool, once: 
     label = Label(
         awaited.source, place, f"on a trace that ends, this only means `{_goal(awaited, sign)}` at the last step"
     )
-    help_ = f"if play has no end and {_WORDS[op]}, write `semantics infinite`"
+    help_ = f"if play has no end and {_WORDS[op]}, write `semantics infinite`: then no trace that ends violates it"
     if not (sign and consists_of_implications(awaited)):
         help_ += f"; if once is enough, {once}"
     return RuleFinding("this is only about the last step", (label,), help_)
