@@ -1,4 +1,4 @@
-"""``tltlc check``: report every error and warning of the compiler, and write nothing.
+"""``tltlc check``: report every error and warning of the compiler and the linter, and write nothing.
 
 With a level or a game, also report whether the specs fit it.
 """
@@ -82,6 +82,7 @@ def command(
 ) -> int:
     """Report all errors and warnings of each SPEC (a file, FILE:NAME, an artefact, or - for standard input).
 
+    The warnings include the probable mistakes in specs that `tltlc lint` finds, but not its notes, nor what is unused.
     In a folder, all .tltl files are checked, also those in subfolders. The default is the current folder.
     With --game, the command also plays each scene of a game twice, and reports what the game offers, how fast it is,
     and whether equal seeds and actions give equal plays. With --level, it also reports what a spec needs but a level of
@@ -91,6 +92,7 @@ def command(
     from tltlc.diagnostics.diagnostic import TltlError
     from tltlc.interfaces.cli.folders import every_source
     from tltlc.interfaces.cli.inputs import open_input
+    from tltlc.interfaces.cli.lint_findings import lint_warnings
     from tltlc.interfaces.cli.report import Report, count_text, tally
     from tltlc.io.spec_file import split
 
@@ -106,10 +108,11 @@ def command(
             except TltlError as error:
                 report.add(error.diagnostics)
                 continue
-            report.add(spec_input.diagnostics)
+            diagnostics = (*spec_input.diagnostics, *lint_warnings(spec_input, split(spec)[1]))
+            report.add(diagnostics)
             if levels or games:
                 inputs.append(spec_input)
-            if spec in specs and not spec_input.diagnostics:
+            if spec in specs and not diagnostics:
                 report.say(f"{spec_input.name}: {count_text(len(spec_input.automata), 'spec')}, nothing to report")
         if len(paths) > 1 or not set(paths).issubset(specs):
             report.say(f"{count_text(len({split(path)[0] for path in paths}), 'file')}: {tally(report.diagnostics)}")
