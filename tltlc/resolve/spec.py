@@ -5,17 +5,14 @@ They do not contain parts of the syntax tree, only spans in the source text for 
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping
-from typing import Final, Literal
+from typing import Literal
 
 from tltlc.core.names import ComparisonName, full_name
 from tltlc.core.record import EMPTY, record
 from tltlc.core.source import SourceFile, Span
 from tltlc.expression.tree import Expression
 from tltlc.logic.formula import Formula
-
-_COMMENT: Final = re.compile(r"//[^\n]*")
 
 ValueType = Literal["number", "ratio", "length", "time", "speed", "angle", "int", "bool"]
 JudgeMode = Literal["goal", "limit"]
@@ -161,6 +158,9 @@ class Bound:
 class Conjunct:
     """One conjunct of a spec's formula, with the place of its clause, so that errors can show the clause.
 
+    ``text`` is the clause on one line, with operators as words and without comments: ``avoid on_lava``. It does
+    not depend on how the source is laid out. It is empty for a formula that stands in no source.
+
     ``bounds`` are the bounds that were expanded in the clause. ``unbounded`` is the formula with
     ``F p`` for ``F[0,3] p`` and ``G p`` for ``G[0,3] p``; None if it equals ``formula``. It decides
     whether an episode is judged at its goal or at its limit (docs/adr/0009).
@@ -169,13 +169,9 @@ class Conjunct:
     formula: Formula
     source: SourceFile
     span: Span
+    text: str = ""
     bounds: tuple[Bound, ...] = ()
     unbounded: Formula | None = None
-
-    @property
-    def text(self) -> str:
-        """The clause as the source has it, on one line with single blanks: ``avoid on_lava``."""
-        return " ".join(_COMMENT.sub(" ", self.source.text[self.span.start : self.span.end]).split())
 
 
 @record

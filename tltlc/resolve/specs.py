@@ -7,6 +7,7 @@ from math import prod
 from typing import Final, Literal, cast
 
 from tltlc.core.record import replace
+from tltlc.core.source import SourceFile
 from tltlc.diagnostics.diagnostic import Label, replacement_fix
 from tltlc.expression.tree import Expression, nodes
 from tltlc.expression.tree import ParamValue as ParamNode
@@ -14,6 +15,8 @@ from tltlc.expression.tree import SignalValue as SignalNode
 from tltlc.grammar.tree import BinaryExpr, Clause, Expr, NameExpr, NumberExpr, SpecDecl
 from tltlc.grammar.walk import conjuncts
 from tltlc.logic.formula import Formula, always, and_, bound_of, eventually, not_
+from tltlc.logic.text.one_line import OneLinePrinter
+from tltlc.logic.text.style import STYLES
 from tltlc.resolve.bounds import no_timer_error
 from tltlc.resolve.breaches import with_breaches
 from tltlc.resolve.constants import samples
@@ -209,7 +212,8 @@ def _avoid(clause: Clause, env: Env) -> list[Conjunct]:
 
 
 def _require(clause: Clause, env: Env) -> list[Conjunct]:
-    return [Conjunct(with_bounds(e, env), env.scope.source, e.span) for e in conjuncts(_expression(clause))]
+    source = env.scope.source
+    return [Conjunct(with_bounds(e, env), source, e.span, _text(e, source)) for e in conjuncts(_expression(clause))]
 
 
 _READERS: dict[str, Callable[[Clause, Env], list[Conjunct]]] = {
@@ -226,7 +230,15 @@ def _expression(clause: Clause) -> Expr:
 
 
 def _conjunct(conjunct: Formula, clause: Clause, env: Env) -> Conjunct:
-    return Conjunct(conjunct, env.scope.source, clause.span)
+    source = env.scope.source
+    return Conjunct(conjunct, source, clause.span, f"{clause.kind} {_text(_expression(clause), source)}")
+
+
+def _text(expression: Expr, source: SourceFile) -> str:
+    """Return an expression on one line, with operators as words."""
+    text = OneLinePrinter(source, STYLES["words"]).text(expression)
+    assert text is not None, "there is room for every text"
+    return text
 
 
 def _store_metadata(clause: Clause, metadata: dict[str, Clause], env: Env) -> None:

@@ -3,6 +3,6 @@
 Begin with :mod:`tltlc.tools.fmt.format`.
 """
 
+from tltlc.logic.text.style import STYLES as STYLES
 from tltlc.tools.fmt.format import format_source as format_source
 from tltlc.tools.fmt.format import format_text as format_text
-from tltlc.tools.fmt.style import STYLES as STYLES

@@ -7,9 +7,9 @@ from collections.abc import Sequence, Set
 from tltlc.core.source import SourceFile, Span
 from tltlc.grammar import tree
 from tltlc.grammar.tree import Expr
+from tltlc.logic.text.one_line import OneLinePrinter
 from tltlc.tools.fmt.expressions import Expressions, Item, head_end, name_item
-from tltlc.tools.fmt.one_line import OneLinePrinter
-from tltlc.tools.fmt.page import STEP, Page
+from tltlc.tools.fmt.page import STEP, WIDTH, Page
 
 
 class DeclarationPrinter:
@@ -174,7 +174,7 @@ class DeclarationPrinter:
             return f"{item.kind} {', '.join(part.name for part in item.value)}"
         else:
             head, values = _keyword(item), [item.value]
-        texts = [self._one_line.text(value) for value in values]
+        texts = [self._one_line.text(value, WIDTH) for value in values]
         return None if None in texts else f"{head} {', '.join(text for text in texts if text)}"
 
     def _put_item(self, item: tree.Clause | tree.TestStep | tree.TestExpect) -> None:

@@ -6,16 +6,13 @@ An expression that does not fit on one line is broken at its loosest operators a
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Final, NamedTuple
+from typing import NamedTuple
 
 from tltlc.core.source import Span
 from tltlc.grammar import tree
 from tltlc.grammar.tree import Expr
-from tltlc.tools.fmt.one_line import OneLinePrinter, chain, is_speed
+from tltlc.logic.text.one_line import ENDLESS, OneLinePrinter, chain, is_speed
 from tltlc.tools.fmt.page import STEP, WIDTH, Page
-
-_ENDLESS: Final = 1 << 30
-"""The room for a text that cannot be broken."""
 
 
 class Item(NamedTuple):
@@ -172,7 +169,7 @@ class Expressions:
                 self._put_chain(node, indent, reserved)
             case _:
                 self._page.put_comments(node.span.end, indent)
-                self._page.put(self._one_line.text(node, _ENDLESS) or "")
+                self._page.put(self._one_line.text(node, ENDLESS) or "")
 
     def _put_chain(self, node: tree.BinaryExpr, indent: int, reserved: int) -> None:
         """Write the operands of a chain such as ``a and b and c``, each on its own line.

@@ -9,11 +9,11 @@ from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.grammar.lexer import MAX_TOKENS
 from tltlc.grammar.module import Module
 from tltlc.grammar.parser import is_too_large, parse
+from tltlc.logic.text.one_line import OneLinePrinter
+from tltlc.logic.text.style import DEFAULT, STYLES, Style
 from tltlc.tools.fmt.declarations import DeclarationPrinter
 from tltlc.tools.fmt.layout_constraints import NO_CONSTRAINTS, LayoutConstraints, required_constraints
-from tltlc.tools.fmt.one_line import OneLinePrinter
 from tltlc.tools.fmt.page import Page
-from tltlc.tools.fmt.style import DEFAULT, STYLES, Style
 
 
 def format_text(text: str, style: str = DEFAULT) -> str:

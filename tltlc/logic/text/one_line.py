@@ -8,9 +8,11 @@ from typing import Final
 from tltlc.core.source import SourceFile
 from tltlc.grammar import tree
 from tltlc.grammar.tree import Expr
-from tltlc.tools.fmt.bounds import Number, bound_forms
-from tltlc.tools.fmt.page import WIDTH
-from tltlc.tools.fmt.style import Style
+from tltlc.logic.text.source_bounds import Number, bound_forms
+from tltlc.logic.text.style import Style
+
+ENDLESS: Final = 1 << 30
+"""The room for a text that may be of any length."""
 
 _LEVEL: Final = {"-": "+", "/": "*", "W": "U", "R": "U", "M": "U", "since": "U"}
 """Maps each operator to one that represents all operators of the same precedence."""
@@ -28,7 +30,7 @@ class OneLinePrinter:
         self._source = source
         self._style = style
 
-    def text(self, node: Expr, room: int = WIDTH) -> str | None:
+    def text(self, node: Expr, room: int = ENDLESS) -> str | None:
         """Return an expression as text on one line, or None if it takes more than ``room`` columns.
 
         Comments inside the expression are left out. The printer stops as soon as the room is used

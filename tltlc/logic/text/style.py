@@ -41,7 +41,7 @@ class Style:
         """Return the text of a prefix operator, with its bound and the space after it.
 
         ``bound`` has the forms in which the bound can be written, as
-        :func:`tltlc.tools.fmt.bounds.bound_forms` returns them.
+        :func:`tltlc.logic.text.source_bounds.bound_forms` returns them.
         """
         if "words" in bound and (self.letters or "brackets" not in bound):
             return f"{self.prefix[node.op].rstrip()} {bound['words']} "
