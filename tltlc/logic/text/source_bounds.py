@@ -29,8 +29,8 @@ def bound_forms(node: tree.Unary, number: Callable[[tree.NumberExpr], Number]) -
     """Return the texts of the bound of an operator, by the names ``words`` and ``brackets``.
 
     For ``eventually[0,3] a``, they are ``{"words": "within 3 steps", "brackets": "[0,3]"}``. The
-    result is empty if the operator has no bound. It has only the form of the source if the other
-    form cannot express the bound.
+    result is empty if the operator has no bound, or one that it may not have. It has only the form of
+    the source if the other form cannot express the bound.
 
     ``for 3 steps`` gives the number of samples, and ``[0,2]`` the offset of the last one, so both
     mean the same. A time is rounded up to samples, so ``for`` with a time cannot be written in
@@ -39,7 +39,7 @@ def bound_forms(node: tree.Unary, number: Callable[[tree.NumberExpr], Number]) -
     ``number`` returns a number as the source spells it.
     """
     bound = node.bound
-    if bound is None:
+    if bound is None or node.op not in _WORD:
         return {}
     high = number(bound.high)
     if bound.words:
