@@ -23,6 +23,8 @@ from tltlc.tools.lint.scopes import apply_edits
 FOLDER = Path(__file__).parent / "phrases"
 MOST_ROUNDS = 3
 """The most fixes that are applied to one phrase, each for another error."""
+NO_CLAUSE = "no clause can say"
+"""What the help of an ``unsayable`` phrase says."""
 
 Kind = Literal["right", "helped", "not helped", "warned", "wrong"]
 
@@ -32,18 +34,20 @@ class Phrase:
     """A phrase as typed, the clauses that were meant, and their formula.
 
     ``also`` has other clauses that the phrase may mean; either reading is right. ``explain`` is what
-    ``tltlc explain`` says of the clauses that were meant. ``in_words``, in the phrases of the second
-    writer, is what was meant, in plain English, written together with the phrase.
+    ``tltlc explain`` says of the clauses that were meant. ``in_words``, in the phrases of later
+    writers, is what was meant, in plain English, written together with the phrase. An ``unsayable``
+    phrase means what no clause can say; it has no ``meant``, ``formula`` and ``explain``.
     """
 
     source: str
     prelude: str
     typed: str
-    meant: str
-    formula: str
+    meant: str = ""
+    formula: str = ""
     explain: str = ""
     also: tuple[str, ...] = ()
     in_words: str = ""
+    unsayable: bool = False
 
 
 @record
@@ -53,7 +57,8 @@ class Outcome:
     ``right``: it compiles as it stands to what is meant. ``helped``: it does after the fixes that are
     offered first. ``warned``: it ends as something else, but the linter says so. ``wrong``: it ends as
     something else, and nothing says so. ``not helped``: an error is left that offers no fix.
-    An automaton that is too large is such an error, too.
+    An automaton that is too large is such an error, too. An ``unsayable`` phrase is ``helped`` if it
+    is offered no fix, and its help says that no clause can say it; it is ``wrong`` if it compiles.
     """
 
     kind: Kind
@@ -124,11 +129,15 @@ def outcome(phrase: Phrase) -> Outcome:
     typed = spec_text(phrase, phrase.typed)
     text, left = fix(typed)
     if left:
+        if phrase.unsayable and text == typed and any(NO_CLAUSE in (error.help or "") for error in left):
+            return Outcome("helped", text, left[0].help or "")
         return Outcome("not helped", text, f"{left[0].title}; {left[0].help}")
     try:
         automaton(text)
     except TltlError as error:
         return Outcome("not helped", text, str(error))
+    if phrase.unsayable:
+        return Outcome("wrong", text, sentence(text))
     readings = [spec_text(phrase, clauses) for clauses in (phrase.meant, *phrase.also)]
     if any(is_equivalent(text, reading) for reading in readings):
         return Outcome("right" if text == typed else "helped", text, sentence(text))

@@ -9,6 +9,9 @@ import pytest
 from tests.grammar.phrases_as_typed import Outcome, Phrase, is_equivalent, outcome, phrases, sentence, spec_text
 
 PHRASES = tuple(phrases())
+SAYABLE = tuple(phrase for phrase in PHRASES if not phrase.unsayable)
+MEASURED_ONLY = ("trial_designer", "trial_programmer", "trial_qa", "trial_rl")
+"""The files whose phrases are measured, and do not count for ``LEAST_RATE``."""
 LEAST_RATE = 0.85
 """The least share of phrases that compile to what is meant, as they stand or after the fix that is offered first."""
 
@@ -18,13 +21,13 @@ def settings(clauses: str) -> str:
     return "\n".join(line for line in clauses.splitlines() if line.startswith("limit"))
 
 
-@pytest.mark.parametrize("phrase", PHRASES, ids=lambda phrase: f"{phrase.source}: {phrase.typed}")
+@pytest.mark.parametrize("phrase", SAYABLE, ids=lambda phrase: f"{phrase.source}: {phrase.typed}")
 def test_the_clauses_that_are_meant_are_the_formula(phrase: Phrase) -> None:
     formula = f"{settings(phrase.meant)}\nrequire {phrase.formula}"
     assert is_equivalent(spec_text(phrase, phrase.meant), spec_text(phrase, formula))
 
 
-@pytest.mark.parametrize("phrase", PHRASES, ids=lambda phrase: f"{phrase.source}: {phrase.typed}")
+@pytest.mark.parametrize("phrase", SAYABLE, ids=lambda phrase: f"{phrase.source}: {phrase.typed}")
 def test_explain_says_what_is_meant(phrase: Phrase) -> None:
     result = outcome(phrase)
     is_right = result.kind in ("right", "helped") and not phrase.in_words
@@ -35,7 +38,9 @@ def test_most_phrases_are_right_or_rightly_helped_and_none_is_wrong() -> None:
     outcomes = [(phrase, outcome(phrase)) for phrase in PHRASES]
     number = Counter(result.kind for _, result in outcomes)
     assert number["wrong"] == 0, table(outcomes)
-    assert number["right"] + number["helped"] >= LEAST_RATE * len(PHRASES), table(outcomes)
+    counted = [(phrase, result) for phrase, result in outcomes if phrase.source not in MEASURED_ONLY]
+    number = Counter(result.kind for _, result in counted)
+    assert number["right"] + number["helped"] >= LEAST_RATE * len(counted), table(counted)
 
 
 def table(outcomes: list[tuple[Phrase, Outcome]]) -> str:
