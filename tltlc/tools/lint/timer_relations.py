@@ -23,16 +23,23 @@ def timer_relations(spec: SpecView, names: Collection[str]) -> tuple[Conjunct, .
     return tuple(Conjunct(formula, spec.spec.source, spec.spec.name_span) for formula in formulas)
 
 
+def readers(spec: SpecView, names: Collection[str]) -> Iterator[tuple[Register, Atom]]:
+    """Yield each timer with each atom, of the atoms ``names``, that depends on this timer alone."""
+    atoms = [candidate for candidate in spec.fspa.atoms if candidate.name in names]
+    for timer in spec.fspa.registers:
+        if timer.kind in _TIMERS:
+            yield from ((timer, candidate) for candidate in atoms if _reads_only(candidate, timer))
+
+
 def _impossible_pairs(spec: SpecView, names: Collection[str]) -> Iterator[Formula]:
     atoms = [candidate for candidate in spec.fspa.atoms if candidate.name in names]
-    for timer in (register for register in spec.fspa.registers if register.kind in _TIMERS):
-        for reader in (candidate for candidate in atoms if _reads_only(candidate, timer)):
-            for candidate in atoms:
-                for holds in (True, False):
-                    value = _value(timer.update, {candidate.name: holds})
-                    if value is not None:
-                        is_true = evaluate(reader.expression, {timer.name: value}, {}) > 0
-                        yield and_(_literal(candidate, holds), _literal(reader, not is_true))
+    for timer, reader in readers(spec, names):
+        for candidate in atoms:
+            for holds in (True, False):
+                value = _value(timer.update, {candidate.name: holds})
+                if value is not None:
+                    is_true = evaluate(reader.expression, {timer.name: value}, {}) > 0
+                    yield and_(_literal(candidate, holds), _literal(reader, not is_true))
 
 
 def _literal(candidate: Atom, holds: bool) -> Formula:

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import re
+from itertools import groupby, product
+
 import pytest
 from hypothesis import given
 
@@ -121,8 +124,16 @@ ALTOGETHER = "to forbid `a` altogether, write `avoid a`"
         ("keep a implies time_since(a) < 2 s", None),
         ("keep not a implies time_since(a) >= 2 s", None),
         ("keep a implies time_since(b) >= 2 s", None),
-        ("keep a implies time_holding(a) >= 2 s", None),
-        ("keep a implies time_holding(a and b) >= 2 s", None),
+        ("keep a and b implies time_holding(a) >= 2 s", None),
+        ("keep a implies time_holding(a) >= 2 s or b", None),
+        ("keep a implies time_holding(a) < 2 s", None),
+        ("keep not a and time_holding(a) < 2 s", None),
+        ("keep ends a implies previously (time_holding(a) >= 2 s)", None),
+        (
+            "keep ends a implies time_holding(a) >= 2 s",
+            "`time_holding(a)` is 0 s at that step: write `previously (time_holding(a) >= 2 s)`; "
+            "to forbid `ends a` altogether, write `avoid ends a`",
+        ),
         ("keep not a implies time_holding(a) < 2 s", None),
         (
             "keep not a implies time_holding(a and b) >= 2 s",
@@ -164,3 +175,90 @@ def test_the_clause_that_forbids_the_event_altogether_means_the_same(clause: str
     (finding,) = (found for found in findings_in(head.format(clause)) if found.diagnostic.code == "TLT0432")
     assert str(finding.diagnostic.help).endswith(f"write `{same}`")
     assert accepted_traces(head.format(clause), "ab") == accepted_traces(head.format(same), "ab")
+
+
+@pytest.mark.parametrize(
+    ("clause", "lasting", "forbidding"),
+    [
+        ("keep a implies time_holding(a) >= 2 s", "keep begins a implies always for 2 s a", "avoid a"),
+        ("keep a implies time_holding(a) > 2 s", "keep begins a implies always for 2 s a", "avoid a"),
+        ("keep a implies 2 s <= time_holding(a)", "keep begins a implies always for 2 s a", "avoid a"),
+        ("require always (a -> time_holding(a) >= 2 s)", "keep begins a implies always for 2 s a", "avoid a"),
+        ("keep begins a implies time_holding(a) >= 2 s", "keep begins a implies always for 2 s a", "avoid a"),
+        ("keep b and (a implies time_holding(a) >= 2 s)", "keep begins a implies always for 2 s a", "avoid a"),
+        ("keep a or b implies time_holding(a) >= 2 s", "keep begins a implies always for 2 s a", "avoid a or b"),
+        ("avoid a and time_holding(a) < 2 s", "keep begins a implies always for 2 s a", "avoid a"),
+        ("avoid a and not time_holding(a) >= 2 s", "keep begins a implies always for 2 s a", "avoid a"),
+        (
+            "keep not a implies time_holding(not a) >= 2 s",
+            "keep begins not a implies always for 2 s not a",
+            "keep a",
+        ),
+        (
+            "keep a and b implies time_holding(a and b) >= 2 s",
+            "keep begins (a and b) implies always for 2 s (a and b)",
+            "avoid a and b",
+        ),
+        (
+            "keep a implies time_holding(a and b) >= 2 s",
+            "keep begins (a and b) implies always for 2 s (a and b)",
+            "avoid a",
+        ),
+        ("keep a implies time_holding(a) > 0 s", None, "avoid a"),
+    ],
+)
+@pytest.mark.parametrize("clock", ["clock 60 Hz", "clock varies"])
+def test_a_rule_that_each_stretch_breaks_at_its_first_step_is_reported(
+    clause: str, lasting: str | None, forbidding: str, clock: str
+) -> None:
+    (finding,) = (found.diagnostic for found in findings_in(stretch_spec(clause, clock)) if found.fix == ())
+    event = re.findall(r"time_holding\((.*?)\)", clause)[0]
+    forbidden = forbidding.removeprefix("avoid ").replace("keep ", "not ")
+    assert (finding.code, finding.title) == (
+        "TLT0432",
+        f"`time_holding({event})` is 0 s when `{event}` begins, so this forbids `{forbidden}`",
+    )
+    advice = [] if lasting is None else [f"if each stretch of `{event}` lasts at least 2 s, write `{lasting}`"]
+    assert finding.help == "; ".join([*advice, f"to forbid `{forbidden}` altogether, write `{forbidding}`"])
+    for offered in filter(None, (lasting, forbidding)):
+        assert "TLT0432" not in codes(stretch_spec(offered, clock))
+
+
+def test_a_spec_that_is_a_formula_is_offered_formulas() -> None:
+    (finding,) = findings_in("clock 2 Hz\nsignal a: bool\nspec s = always (a implies time_holding(a) >= 2 s)\n")
+    assert finding.diagnostic.help == (
+        "if each stretch of `a` lasts at least 2 s, write `always (begins a implies always for 2 s a)`; "
+        "to forbid `a` altogether, write `always not a`"
+    )
+
+
+def stretch_spec(clause: str, clock: str = "clock 2 Hz") -> str:
+    head = "limit 9000 steps judge at limit"
+    return f"{clock}\nsignal a: bool\nsignal b: bool\nspec s {{\n    {head}\n    {clause}\n}}\n"
+
+
+@pytest.mark.parametrize(
+    ("clause", "same"),
+    [
+        ("keep a implies time_holding(a) >= 1 s", "avoid a"),
+        ("keep begins a implies time_holding(a) > 0 s", "avoid a"),
+        ("avoid a and time_holding(a) < 1 s", "avoid a"),
+        ("keep not a implies time_holding(not a) >= 1 s", "keep a"),
+        ("keep a or b implies time_holding(a) >= 1 s", "avoid a or b"),
+        ("keep a implies time_holding(a and b) >= 1 s", "avoid a"),
+    ],
+)
+def test_such_a_rule_forbids_the_event(clause: str, same: str) -> None:
+    assert "TLT0432" in codes(stretch_spec(clause))
+    assert accepted_traces(stretch_spec(clause), "ab", 4) == accepted_traces(stretch_spec(same), "ab", 4)
+
+
+@pytest.mark.parametrize(("seconds", "least"), [("1 s", 2), ("1.5 s", 3), ("2 s", 4)])
+def test_the_suggested_rule_accepts_traces_whose_stretches_last_long_enough(seconds: str, least: int) -> None:
+    """Each sample lasts for half a second here. The stretch at the end of a trace may go on after it."""
+    accepted = accepted_traces(stretch_spec(f"keep begins a implies always for {seconds} a"), "a", 7)
+    for length in range(1, 8):
+        for trace in product(("", "a"), repeat=length):
+            stretches = [len([*samples]) for is_a, samples in groupby(trace) if is_a]
+            whole = stretches[:-1] if trace[-1] else stretches
+            assert (trace in accepted) == all(samples >= least for samples in whole)

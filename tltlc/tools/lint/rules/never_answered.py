@@ -1,7 +1,8 @@
 """TLT0432: `p implies q` where q never holds at the step of p, so p is forbidden.
 
 The same is true of `p implies always for 1 s q` and `p implies not eventually within 1 s r`, which begin at the step
-of p, and of `p implies time_since(p) >= 1 s`, because the time is 0 s at that step.
+of p, and of `p implies time_since(p) >= 1 s`, because the time is 0 s at that step. The rule
+`p implies time_holding(p) >= 1 s` fails when p begins, and so forbids p, too.
 """
 
 from __future__ import annotations
@@ -20,6 +21,7 @@ from tltlc.resolve.spec import Conjunct
 from tltlc.tools.lint.atom_relations import relations
 from tltlc.tools.lint.file_view import FileView, ScopedExpression, SpecView, operand_text, without_brackets
 from tltlc.tools.lint.rule import LintRule, RuleFinding
+from tltlc.tools.lint.stretches import ForbiddenStretch, every_step, forbidden_stretches, forbidding_clause
 from tltlc.tools.lint.timer_relations import timer_relations
 
 _REQUIRING: Final = ("implies", "and", "G", "X", "N")
@@ -54,6 +56,7 @@ class _Required:
 def check(view: FileView) -> Iterator[RuleFinding]:
     """Yield a finding for each required implication whose two sides never hold at the same step.
 
+    Also yield one for each rule that asks how long an event has lasted, also at the step at which it begins.
     Such an implication only forbids its condition. There is no finding if one of the sides never
     holds at all, or if no trace satisfies the clause: then more is wrong.
     """
@@ -61,18 +64,11 @@ def check(view: FileView) -> Iterator[RuleFinding]:
         for clause, value in spec.clauses("keep", "require"):
             found = [required for part in _implications(value) for required in _impossible(part, spec)]
             if found and _can_hold(clause, value, spec):
-                always = _required_at_every_step(clause, value)
+                always = every_step(clause, value)
                 yield from (_finding(required, at_every_step=required.implication.tree in always) for required in found)
-
-
-def _required_at_every_step(clause: Clause, value: ScopedExpression) -> list[Expr]:
-    """Return the conjuncts of the formula that a clause requires at every step, or [] if it has another form."""
-    tree = without_brackets(value.tree)
-    if clause.kind == "require":
-        if not isinstance(tree, Unary) or tree.op != "G" or tree.bound is not None:
-            return []
-        tree = tree.operand
-    return [without_brackets(part) for part in conjuncts(tree)]
+        for clause, value in spec.clauses("keep", "avoid", "require"):
+            for stretch in forbidden_stretches(clause, value, spec):
+                yield _stretch_finding(stretch, in_block=spec.declaration.block)
 
 
 def _implications(value: ScopedExpression) -> Iterator[ScopedExpression]:
@@ -157,18 +153,26 @@ def _finding(required: _Required, *, at_every_step: bool) -> RuleFinding:
     implication, condition, result = required.implication, required.condition, required.operand
     label = Label(implication.source, implication.tree.span, f"so this only forbids `{condition.text}`")
     text = f"not {operand_text(result)}" if required.negated else result.text
-    help_ = _later(required) if required.lasting is not None else _timer_help(result)
+    help_ = _later(required) if required.lasting is not None else _timer_help(required)
     if help_ is not None and at_every_step:
-        help_ += f"; to forbid `{condition.text}` altogether, write `{_forbidden(condition)}`"
+        help_ += f"; to forbid `{condition.text}` altogether, write `{forbidding_clause(condition)}`"
     help_ = help_ or f"if it comes later, write `{operand_text(condition)} implies eventually {operand_text(result)}`"
     return RuleFinding(f"`{text}` never holds at the same step as `{condition.text}`", (label,), help_)
 
 
-def _forbidden(condition: ScopedExpression) -> str:
-    tree = without_brackets(condition.tree)
-    if isinstance(tree, Unary) and tree.op == "not":
-        return f"keep {condition.with_tree(tree.operand).text}"
-    return f"avoid {condition.text}"
+def _stretch_finding(stretch: ForbiddenStretch, *, in_block: bool) -> RuleFinding:
+    event, forbidden = stretch.event.text, stretch.forbidden
+    title = f"`time_holding({event})` is 0 s when `{event}` begins, so this forbids `{forbidden.text}`"
+    place = Label(
+        stretch.rule.source, stretch.rule.tree.span, f"each stretch of `{event}` breaks this at its first step"
+    )
+    forbidding = forbidding_clause(forbidden) if in_block else f"always not {operand_text(forbidden)}"
+    help_ = f"to forbid `{forbidden.text}` altogether, write `{forbidding}`"
+    if stretch.least:
+        rule = stretch.lasting_rule()
+        lasting = f"keep {rule}" if in_block else f"always ({rule})"
+        help_ = f"if each stretch of `{event}` lasts at least {stretch.least}, write `{lasting}`; {help_}"
+    return RuleFinding(title, (place,), help_)
 
 
 def _later(required: _Required) -> str:
@@ -197,8 +201,9 @@ def _goal_text(part: ScopedExpression) -> str:
     return part.text if is_name else f"({part.text})"
 
 
-def _timer_help(result: ScopedExpression) -> str | None:
+def _timer_help(required: _Required) -> str | None:
     """Return the help for a comparison of a timer with a time, else None."""
+    result = required.operand
     tree = without_brackets(result.tree)
     if not isinstance(tree, BinaryExpr) or not isinstance(tree.left, CallExpr) or tree.left.name not in _TIMERS:
         return None
@@ -210,6 +215,9 @@ def _timer_help(result: ScopedExpression) -> str | None:
     if may_repeat and isinstance(tree.right, NumberExpr) and tree.op in (">", ">="):
         begins, time = f"begins {operand_text(event)}", result.with_tree(tree.right).text
         return f"{help_}; to forbid a second beginning so soon, write `avoid ({begins}) then within {time} ({begins})`"
+    condition = without_brackets(required.condition.tree)
+    if isinstance(condition, Unary) and condition.op == "ends":
+        return f"{help_}: write `previously ({result.text})`"
     return f"{help_}: compare it at another step"
 
 
