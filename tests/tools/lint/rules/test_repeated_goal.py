@@ -28,6 +28,9 @@ def quoted(clause: str) -> list[str]:
         ("reach (a and b) then (a and b)", "(a and b)"),
         ("reach x > 3 then x >  3", "x >  3"),
         ("reach a then within 5 steps a", "a"),
+        ("avoid a then a", "a"),
+        ("avoid (a and b) then (a and b)", "(a and b)"),
+        ("avoid a then within 5 steps a", "a"),
     ],
 )
 def test_a_goal_that_is_the_goal_before_it_is_reported(clause: str, goal: str) -> None:
@@ -44,6 +47,9 @@ def test_a_goal_that_is_the_goal_before_it_is_reported(clause: str, goal: str) -
         "reach x > 3 then x > 4",
         "reach once a then once a",
         "keep b implies eventually a",
+        "avoid a then b then a",
+        "avoid (begins a) then (begins a)",
+        "avoid (once a) then (once a)",
     ],
 )
 def test_goals_that_differ_or_are_about_several_steps_are_left_out(clause: str) -> None:
@@ -71,3 +77,29 @@ def test_among_other_goals_the_second_one_begins() -> None:
 
 def test_a_time_that_the_goal_holds_needs_a_clock() -> None:
     assert "time_holding" not in help_of("reach a then a")
+
+
+@pytest.mark.parametrize(
+    ("clause", "again"),
+    [
+        ("avoid a then a", "keep times(a) <= 1"),
+        ("avoid a then a then a", "keep times(a) <= 2"),
+        ("avoid a then within 2 s a", "avoid (begins a) then within 2 s (begins a)"),
+        ("avoid a then within 2 steps a", "avoid (begins a) then within 2 steps (begins a)"),
+        ("avoid not a then not a", "keep times(not a) <= 1"),
+    ],
+)
+def test_what_must_not_begin_again_may_last(clause: str, again: str) -> None:
+    assert quoted(clause) == [again]
+    before = "clock 1 Hz signal a: bool\n"
+    assert "TLT0445" not in codes(block(again, before=before))
+    typed, begun = (accepted_traces(block(text, before=before), "a") for text in (clause, again))
+    assert typed < begun
+    event, other = ("", "a") if "not" in clause else ("a", "")
+    assert (event, event, event) in begun - typed
+    assert (event, other) * clause.count("then") + (event,) not in begun
+
+
+def test_between_other_events_the_second_one_begins() -> None:
+    assert quoted("avoid b then a then a") == ["(begins a)"]
+    assert "TLT0445" not in codes(block("avoid b then a then (begins a)"))
