@@ -53,6 +53,17 @@ def test_what_is_unused_is_left_to_lint(tltlc: Command, inside: Path) -> None:
     assert "TLT0421" in (linted := tltlc("lint", "game.tltl").err) and "TLT0427" in linted
 
 
+def test_a_warning_of_the_compiler_is_left_out_where_the_linter_says_more(tltlc: Command, inside: Path) -> None:
+    clauses = ("keep eventually a", "keep eventually not a")
+    text = f"signal a: bool\nspec s {{\n    {clauses[0]}\n    {clauses[1]}\n}}\n"
+    Path("game.tltl").write_text(text)
+    checked = tltlc("check", "game.tltl").err
+    assert checked.count("warning[TLT0424]") == 2 and "TLT0410" not in checked
+    assert "warning[TLT0410]" in tltlc("compile", "game.tltl", "-o", "out").err
+    Path("game.tltl").write_text(text.replace("spec s {", "spec s {  // tltlc: allow TLT0424"))
+    assert "warning[TLT0410]" in tltlc("check", "game.tltl").err
+
+
 def test_an_artefact_has_no_text_to_lint(tltlc: Command, inside: Path) -> None:
     Path("game.tltl").write_text(SPECS)
     tltlc("compile", "game.tltl:repeated", "-o", "out")

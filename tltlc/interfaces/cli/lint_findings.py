@@ -1,4 +1,4 @@
-"""The warnings of the linter that commands beside ``tltlc lint`` show: that a spec may not mean what was meant."""
+"""The findings that ``tltlc check`` shows: those of the compiler, and that a spec may not mean what was meant."""
 
 from __future__ import annotations
 
@@ -16,32 +16,40 @@ _UNUSED: Final = (unused_declaration.RULE.code, unused_import.RULE.code, allow.C
 """The codes of findings about names and comments that are not needed, which change no spec."""
 
 
-def lint_warnings(spec_input: Input, spec: str | None = None) -> tuple[Diagnostic, ...]:
-    """Return the warnings of the linter about the specs of a compiled file.
+def diagnostics_of(spec_input: Input, spec: str | None = None) -> tuple[Diagnostic, ...]:
+    """Return the diagnostics of a compiled file, then the warnings of the linter about its specs.
 
-    An error of the linter is a warning here, because the file compiles; it stays an error if the project
-    file says so. Notes are left out, and so are findings about unused names and comments. If ``spec`` is the name of a
-    spec in the file, only the findings inside this spec are returned. An artefact, which has no text, has
-    none.
+    A diagnostic of the compiler is left out if a finding of the linter supersedes it. An error of the
+    linter is a warning here, because the file compiles; it stays an error if the project file says so.
+    Notes of the linter are left out, and so are findings about unused names and comments. If ``spec`` is
+    the name of a spec in the file, only the findings inside this spec are returned. For an artefact,
+    which has no text, the linter finds nothing.
     """
     if spec_input.session is None:
-        return ()
+        return spec_input.diagnostics
     source, project = spec_input.session.source, spec_input.project
     with project.apply_lint_levels():
         view = view_of(source, spec_input.session.options)
-    about_specs = tuple(
-        _as_warning(finding.diagnostic, project)
-        for finding in findings(view, project.lint)
-        if finding.diagnostic.severity != "note" and finding.diagnostic.code not in _UNUSED
-    )
-    if spec is None:
-        return about_specs
-    (place,) = (item.declaration.span for item in view.specs if item.spec.name == spec)
-    return tuple(
-        diagnostic
-        for diagnostic in about_specs
-        if any(label.source == source and place.covers(label.span) for label in diagnostic.labels[:1])
-    )
+    found = [finding.diagnostic for finding in findings(view, project.lint)]
+    superseded = {*map(_without_severity, view.diagnostics)}.difference(map(_without_severity, found))
+    compiled = [own for own in spec_input.diagnostics if _without_severity(own) not in superseded]
+    about_specs = [
+        _as_warning(diagnostic, project)
+        for diagnostic in found
+        if diagnostic.severity != "note" and diagnostic.code not in _UNUSED
+    ]
+    if spec is not None:
+        (place,) = (item.declaration.span for item in view.specs if item.spec.name == spec)
+        about_specs = [
+            diagnostic
+            for diagnostic in about_specs
+            if any(label.source == source and place.covers(label.span) for label in diagnostic.labels[:1])
+        ]
+    return (*compiled, *about_specs)
+
+
+def _without_severity(diagnostic: Diagnostic) -> Diagnostic:
+    return replace(diagnostic, severity="note")
 
 
 def _as_warning(diagnostic: Diagnostic, project: Project) -> Diagnostic:

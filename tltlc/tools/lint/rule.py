@@ -32,8 +32,8 @@ class LintRule:
     """A lint rule. The documentation page of its code says what it finds, and what to write instead.
 
     ``check`` is a pure function from a file to findings. ``supersedes`` lists the codes of less
-    specific diagnostics. Such a diagnostic is dropped if one of its labels covers the first label of
-    a finding of this rule, unless the diagnostic is more severe than the finding.
+    specific diagnostics. Such a diagnostic is dropped if each of its labels covers a label of a finding
+    that supersedes it, unless the diagnostic is more severe than the finding.
     """
 
     code: str

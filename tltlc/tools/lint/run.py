@@ -106,16 +106,21 @@ def _rule_findings(rule: LintRule, view: FileView) -> Iterator[LintFinding]:
 
 
 def _is_superseded(diagnostic: Diagnostic, superseding: Iterable[Diagnostic]) -> bool:
-    """Whether one of the diagnostics in ``superseding`` makes ``diagnostic`` superfluous.
+    """Whether the diagnostics in ``superseding`` make ``diagnostic`` superfluous.
 
-    A diagnostic does so if its severity is at least that of ``diagnostic``, and if its first label
-    is inside a label of ``diagnostic``.
+    They do if each label of ``diagnostic`` has a label of one of them inside, whose severity is at least
+    that of ``diagnostic``.
     """
     places = [
-        candidate.labels[0] for candidate in superseding if _RANKS[candidate.severity] >= _RANKS[diagnostic.severity]
+        label
+        for candidate in superseding
+        if _RANKS[candidate.severity] >= _RANKS[diagnostic.severity]
+        for label in candidate.labels
     ]
-    labels = diagnostic.labels
-    return any(label.source == place.source and label.span.covers(place.span) for label in labels for place in places)
+    return bool(places) and all(
+        any(label.source == place.source and label.span.covers(place.span) for place in places)
+        for label in diagnostic.labels
+    )
 
 
 def _sort_key(finding: LintFinding, source: SourceFile) -> tuple[bool, int, str]:

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 import tltlc
 from tests.fuzzing import times
 from tests.tools.lint.helpers import (
+    APART,
     PLACES,
     SIGNALS,
     block,
@@ -188,3 +189,20 @@ def last_steps(spec: SpecView, reported: list[RuleFinding]) -> Iterator[Unary]:
         for part in formula.parts():
             if isinstance(part.tree, Unary) and part.tree.op in ("F", "G") and part.tree.op_span.end in ends:
                 yield part.tree
+
+
+@pytest.mark.parametrize(
+    ("clauses", "expected"),
+    [
+        (("keep eventually at(x)", "keep eventually at(y)"), ["TLT0424", "TLT0424"]),
+        (("require G F at(x) and G F at(y)",), ["TLT0424", "TLT0424"]),
+        # The contradiction stays when the first clause is `reach at(x)`.
+        (("keep eventually at(x)", "avoid at(x)"), ["TLT0410", "TLT0424"]),
+        (("keep eventually at(x)", "reach at(y) and always at(y)"), ["TLT0410", "TLT0424"]),
+    ],
+)
+def test_a_contradiction_of_clauses_that_are_all_reported_is_left_out(
+    clauses: tuple[str, ...], expected: list[str]
+) -> None:
+    found = [code for code in codes(block(*clauses, before=APART)) if code in ("TLT0410", "TLT0424")]
+    assert sorted(found) == expected

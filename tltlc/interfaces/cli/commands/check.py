@@ -92,7 +92,7 @@ def command(
     from tltlc.diagnostics.diagnostic import TltlError
     from tltlc.interfaces.cli.folders import every_source
     from tltlc.interfaces.cli.inputs import open_input
-    from tltlc.interfaces.cli.lint_findings import lint_warnings
+    from tltlc.interfaces.cli.lint_findings import diagnostics_of
     from tltlc.interfaces.cli.report import Report, count_text, tally
     from tltlc.io.spec_file import split
 
@@ -108,7 +108,7 @@ def command(
             except TltlError as error:
                 report.add(error.diagnostics)
                 continue
-            diagnostics = (*spec_input.diagnostics, *lint_warnings(spec_input, split(spec)[1]))
+            diagnostics = diagnostics_of(spec_input, split(spec)[1])
             report.add(diagnostics)
             if levels or games:
                 inputs.append(spec_input)

@@ -151,4 +151,4 @@ def _finding(place: Span, op: str, awaited: ScopedExpression, sign: bool, once: 
     return RuleFinding("this is only about the last step", (label,), help_)
 
 
-RULE = LintRule("TLT0424", "warning", check)
+RULE = LintRule("TLT0424", "warning", check, supersedes=("TLT0410",))
