@@ -17,7 +17,7 @@ from tltlc.tools.lint.run import lint
 Command = Callable[..., Outcome]
 
 UNUSED = "signal a: bool\nsignal b: bool\nspec s = F a\n"
-NOTED = "signal a: bool\nspec s { reach a }\n"
+NOTED = "signal a: bool\nspec s { judge at goal reach a }\n"
 
 
 @pytest.mark.parametrize("folder", ["examples", "stdlib_predicates"])
@@ -73,11 +73,11 @@ def test_standard_input_is_linted_but_not_fixed(process) -> None:  # type: ignor
 
 
 def test_fixes_are_written_and_listed(tltlc: Command, inside: Path) -> None:
-    Path("s.tltl").write_text("signal a: bool\nsignal b: bool\nlet c = F b\nspec s { reach a }\n")
+    Path("s.tltl").write_text("signal a: bool\nsignal b: bool\nlet c = F b\nspec s { judge at goal reach a }\n")
     before = Path("hide.tltl").stat().st_mtime_ns
     outcome = tltlc("lint", "--fix", "s.tltl", "hide.tltl")
     assert outcome.status == 0
-    assert Path("s.tltl").read_text() == "signal a: bool\nspec s { reach a }\n"
+    assert Path("s.tltl").read_text() == "signal a: bool\nspec s { judge at goal reach a }\n"
     assert "fixed s.tltl:3: nothing uses the let `c`\nfixed s.tltl:2: nothing uses the signal `b`\n" in outcome.err
     assert "note[TLT0419]" in outcome.err
     assert Path("hide.tltl").stat().st_mtime_ns == before

@@ -21,12 +21,12 @@ BEFORE = "signal seen: bool\n"
 @pytest.mark.parametrize(
     "text",
     [
-        "spec hide { avoid seen }  // tltlc: allow TLT0419",
-        "// tltlc: allow TLT0419\nspec hide { avoid seen }",
-        "//tltlc:allow TLT0419 nobody plays this\n/// Unseen.\n// Twice.\nspec hide { avoid seen }",
-        "// tltlc: allow TLT0421\n// tltlc: allow TLT0419\nsignal heard: bool spec hide { avoid seen }",
-        "// tltlc: allow TLT0419, TLT0421\nsignal heard: bool spec hide { avoid seen }",
-        "// tltlc: allow TLT0419 TLT0421: both\nsignal heard: bool spec hide { avoid seen }",
+        "spec hide { judge at limit avoid seen }  // tltlc: allow TLT0419",
+        "// tltlc: allow TLT0419\nspec hide { judge at limit avoid seen }",
+        "//tltlc:allow TLT0419 nobody plays this\n/// Unseen.\n// Twice.\nspec hide { judge at limit avoid seen }",
+        "// tltlc: allow TLT0421\n// tltlc: allow TLT0419\nsignal heard: bool spec hide { judge at limit avoid seen }",
+        "// tltlc: allow TLT0419, TLT0421\nsignal heard: bool spec hide { judge at limit avoid seen }",
+        "// tltlc: allow TLT0419 TLT0421: both\nsignal heard: bool spec hide { judge at limit avoid seen }",
         "signal heard: bool\nspec go {\n    limit 9 steps\n    reach seen\n        then (not seen)\n"
         "        then (seen implies heard)  // tltlc: allow TLT0412\n}",
         "signal heard: bool\nspec go {\n    limit 9 steps\n    reach seen\n        then (seen implies heard)\n"
@@ -35,7 +35,7 @@ BEFORE = "signal seen: bool\n"
         "signal x in [0, 50]\npredicate never in [-1, 0] = -x / 50\n"
         "spec go {\n    limit 9 steps\n    reach never or seen  // tltlc: allow TLT0416\n}",
         # Empty lines do not matter.
-        "signal heard: bool\n// tltlc: allow TLT0419\n\nspec hide { avoid seen or heard }",
+        "signal heard: bool\n// tltlc: allow TLT0419\n\nspec hide { judge at limit avoid seen or heard }",
     ],
 )
 def test_allowed_findings_are_not_reported(text: str) -> None:
@@ -45,14 +45,17 @@ def test_allowed_findings_are_not_reported(text: str) -> None:
 @pytest.mark.parametrize(
     ("text", "expected"),
     [
-        ("spec hide { avoid seen }\n// tltlc: allow TLT0419", ["TLT0419", "TLT0427"]),
-        ("// tltlc: allow TLT0419\n\n\nsignal b: bool\nspec hide { avoid seen or b }", ["TLT0427", "TLT0419"]),
-        ("/// tltlc: allow TLT0419\nspec hide { avoid seen }", ["TLT0427", "TLT0419"]),
-        ("// tltlc: alow TLT0419\nspec hide { avoid seen }", ["TLT0427", "TLT0419"]),
-        ("// tltlc: a compiler\nspec hide { avoid seen }", ["TLT0419"]),
-        ("// tltlc: allow TLT0418\nspec hide { avoid seen }", ["TLT0427", "TLT0419"]),
-        ("// tltlc: allow\nspec hide { avoid seen }", ["TLT0427", "TLT0419"]),
-        ("// tltlc: allow because of TLT0419\nspec hide { avoid seen }", ["TLT0427", "TLT0419"]),
+        ("spec hide { judge at limit avoid seen }\n// tltlc: allow TLT0419", ["TLT0419", "TLT0427"]),
+        (
+            "// tltlc: allow TLT0419\n\n\nsignal b: bool\nspec hide { judge at limit avoid seen or b }",
+            ["TLT0427", "TLT0419"],
+        ),
+        ("/// tltlc: allow TLT0419\nspec hide { judge at limit avoid seen }", ["TLT0427", "TLT0419"]),
+        ("// tltlc: alow TLT0419\nspec hide { judge at limit avoid seen }", ["TLT0427", "TLT0419"]),
+        ("// tltlc: a compiler\nspec hide { judge at limit avoid seen }", ["TLT0419"]),
+        ("// tltlc: allow TLT0418\nspec hide { judge at limit avoid seen }", ["TLT0427", "TLT0419"]),
+        ("// tltlc: allow\nspec hide { judge at limit avoid seen }", ["TLT0427", "TLT0419"]),
+        ("// tltlc: allow because of TLT0419\nspec hide { judge at limit avoid seen }", ["TLT0427", "TLT0419"]),
         ("// tltlc: allow TLT0427, TLT0418\nspec hide = G !seen", []),
     ],
 )
@@ -120,7 +123,7 @@ def test_a_comment_whose_codes_are_all_unused_is_removed() -> None:
 
 
 def test_a_comment_with_a_used_code_is_kept() -> None:
-    text = "signal seen: bool\n// tltlc: allow TLT0419, TLT0421\nspec hide { avoid seen }\n"
+    text = "signal seen: bool\n// tltlc: allow TLT0419, TLT0421\nspec hide { judge at limit avoid seen }\n"
     assert apply_fixes(text).source.text == text
     assert codes(text) == ["TLT0427"]
 
@@ -165,7 +168,9 @@ def test_the_work_for_comments_is_linear(text: str, case: str) -> None:
 
 def test_every_comment_for_the_same_finding_counts_as_used() -> None:
     comments = "// tltlc: allow TLT0419\n" * 2
-    assert codes(f"{comments}{BEFORE}{comments}spec hide {{ avoid seen }}  // tltlc: allow TLT0419") == []
+    assert (
+        codes(f"{comments}{BEFORE}{comments}spec hide {{ judge at limit avoid seen }}  // tltlc: allow TLT0419") == []
+    )
 
 
 def test_a_comment_within_a_statement_applies_to_the_enclosing_statements() -> None:

@@ -65,9 +65,14 @@ def test_the_title_of_a_fix_says_what_it_removes() -> None:
 
 def test_a_fix_keeps_the_allow_comment_of_another_statement() -> None:
     allow = "// tltlc: allow TLT0419\n"
-    source = SourceFile("x.tltl", f"/// Old.\n{allow}import core\nsignal a: bool\nspec x {{\n    reach a\n}}\n")
+    source = SourceFile(
+        "x.tltl", f"/// Old.\n{allow}import core\nsignal a: bool\nspec x {{\n    judge at goal\n    reach a\n}}\n"
+    )
     (offer,) = fixes_of_findings(lint(source), parse(source)[0])
-    assert apply_edits(source, offer.fix.edits).text == f"{allow}signal a: bool\nspec x {{\n    reach a\n}}\n"
+    assert (
+        apply_edits(source, offer.fix.edits).text
+        == f"{allow}signal a: bool\nspec x {{\n    judge at goal\n    reach a\n}}\n"
+    )
 
 
 def test_the_same_fix_of_many_findings_is_tried_once(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -49,7 +49,7 @@ def test_fixes_produce_the_expected_text(before: str, after: str) -> None:
 
 
 NO_LIMIT = "// tltlc: allow TLT0419\n"
-BLOCK = "spec s {\n    reach a\n}\n"
+BLOCK = "spec s {\n    judge at goal\n    reach a\n}\n"
 
 
 @pytest.mark.parametrize(
@@ -97,7 +97,7 @@ def test_a_duplicate_within_a_formula_is_not_fixed() -> None:
 
 
 def test_fixed_and_remaining_findings_are_listed() -> None:
-    fixed = apply_fixes("signal a: bool\nsignal b: bool\nlet c = F b\nspec s { reach a }\n")
+    fixed = apply_fixes("signal a: bool\nsignal b: bool\nlet c = F b\nspec s { judge at goal reach a }\n")
     assert [finding.title for finding in fixed.fixed] == ["nothing uses the let `c`", "nothing uses the signal `b`"]
     assert [finding.diagnostic.code for finding in fixed.remaining] == ["TLT0419"]
 

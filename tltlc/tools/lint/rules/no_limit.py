@@ -9,13 +9,20 @@ from tltlc.tools.lint.rule import LintRule, RuleFinding
 
 
 def check(view: FileView) -> Iterator[RuleFinding]:
-    """Yield a finding for each spec without a limit.
+    """Yield a finding for each spec without a limit in a file that is about episodes.
 
-    There is no finding for a spec of the form `spec NAME = FORMULA`, which cannot have a limit.
+    Such a file has a spec with a limit, with `judge at`, or with a level. The specs of other files may
+    be for recordings alone, which need no limit. There is no finding for a spec of the form
+    `spec NAME = FORMULA`, which cannot have a limit.
     """
-    for spec in view.specs:
-        if spec.spec.limit_steps is None and spec.declaration.block:
-            yield _finding(spec)
+    if any(map(_is_for_episodes, view.specs)):
+        for spec in view.specs:
+            if spec.spec.limit_steps is None and spec.declaration.block:
+                yield _finding(spec)
+
+
+def _is_for_episodes(spec: SpecView) -> bool:
+    return any(setting is not None for setting in (spec.spec.limit_steps, spec.spec.judge, spec.spec.level))
 
 
 def _finding(spec: SpecView) -> RuleFinding:
