@@ -180,6 +180,7 @@ def test_fixes_keep_all_automata_and_leave_nothing_to_fix(text: str) -> None:
     fixed = apply_fixes(text)
     assert not any(finding.fix for finding in fixed.remaining)
     assert apply_fixes(fixed.source.text).source == fixed.source
+    assert reported_findings(fixed.source.text) <= reported_findings(text)
     _, problems = parse(fixed.source)
     assert not problems
     before, after = tltlc.compile_text(text), tltlc.compile_text(fixed.source.text)
