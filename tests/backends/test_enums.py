@@ -257,7 +257,8 @@ def test_javascript_refuses_other_names(tmp_path: Path) -> None:
     sample = {**by_name()[0], "verdict": '"valueOf"'}
     text = f"{{ {entries(sample)} }}"
     driver = f'import {{ Monitor }} from "./guards_monitor.mjs";\ntry {{ new Monitor().step({text}); console.log(0); }}'
-    driver += ' catch (error) { if (error.message === "step 1: the signal `verdict` is not a number") console.log(1); }'
+    refusal = "step 1: the signal `verdict` is `valueOf`, not one of `satisfied`, `holding` and `toString`"
+    driver += f' catch (error) {{ if (error.message === "{refusal}") console.log(1); }}'
     (tmp_path / "driver.mjs").write_text(driver)
     assert run(tmp_path, ["node", "driver.mjs"]) == [1]
 

@@ -80,6 +80,7 @@ class _Source:
         present += ["states"] if program_.tables is None else ["tables"]
         present += ["registers"] if fspa.registers else []
         present += ["varies"] if fspa.clock_varies else []
+        present += [snippets.enum_block(fspa)]
         with recursion_room():
             exclusive = [(number, {atom: self._holds(atom) for atom in group}) for number, group in program_.exclusive]
             steps = self._code.compute(), self._code.check(exclusive), self._move(), self._judge()
@@ -145,6 +146,7 @@ class _Source:
             "remember": CPrinter.block(self._remember()),
             **self._memory(),
             **verdict,
+            **self._value_names(),
             "give": CPrinter.block(self._give()),
         }
         return fill_template("monitor.h.txt", places, present)
@@ -232,6 +234,17 @@ class _Source:
             f"{_INDENT * 2}{{{', '.join('NULL' if text is None else string_literal(text) for text in texts)}}},"
             for texts in snippets.failure_texts(self._program)
         ]
+
+    def _value_names(self) -> dict[str, str]:
+        """Return the names of the values of enums, each list ended by NULL, and where the list of each signal starts.
+
+        The first list is empty, for signals that are no enums.
+        """
+        names, starts = ["NULL"], dict.fromkeys((signal.name for signal in self._fspa.signals), 0)
+        for enum in self._enums:
+            starts |= dict.fromkeys(enum.enum.signals, len(names))
+            names += [*map(string_literal, enum.enum.values), "NULL"]
+        return {"value_names": _list(names, ""), "value_starts": _list([*map(str, starts.values())], "0")}
 
     def _give(self) -> list[str]:
         """Return the body of a generated function that sets one signal, given its index: a case for each signal."""

@@ -106,9 +106,9 @@ class _Source(StepCode):
             "enums": CSharpPrinter.block(self._enums(), 2),
             "signal_fields": _fields([(name, _type(signal), signal) for signal, name in signals]),
             "param_fields": _fields([(name, "double", param) for param, name in params]),
-            "signal_names": _list([string_literal(signal.name) for signal in fspa.signals]),
-            "atom_names": _list([string_literal(atom.name) for atom in fspa.atoms]),
-            "register_names": _list([string_literal(register.name) for register in fspa.registers]),
+            "signal_names": _strings([signal.name for signal in fspa.signals]),
+            "atom_names": _strings([atom.name for atom in fspa.atoms]),
+            "register_names": _strings([register.name for register in fspa.registers]),
             "register_starts": _list([snippets.number_literal(register.initial) for register in fspa.registers]),
             # The beginning of a message about an atom, or perhaps a register.
             "at_fault": 'Computed() + "' if fspa.registers else '"the atom `" + AtomNames[_which] + "`',
@@ -135,13 +135,13 @@ class _Source(StepCode):
 
     def program_text(self) -> str:
         """Return the text of the program's file."""
-        varies = self._fspa.clock_varies
         places = {
             "type": self._type,
-            "row_dt": ", times.Next(trace)" if varies else "",
+            "row_dt": ", times.Next(trace)" if self._fspa.clock_varies else "",
             "give": CSharpPrinter.block(self._give(), 3),
+            "value_names": _list([f"new string[] {{{_strings(signal.values)}}}" for signal in self._fspa.signals]),
         }
-        return fill_template("monitor_program.cs.txt", places, ["varies"] if varies else [])
+        return fill_template("monitor_program.cs.txt", places, snippets.common_blocks(self._program))
 
     def _enums(self) -> list[str]:
         """Return the lines of a static class with constants for each enum of the spec, each before an empty line."""
@@ -185,10 +185,8 @@ class _Source(StepCode):
         """Return the pieces of the template with the tables of states or, if there are none, with their labels."""
         if tables is None:
             return {
-                "labels": _list([string_literal(str(state.label)) for state in self._fspa.states]),
-                "english_labels": _list(
-                    [string_literal(label_text(self._fspa, state.id)) for state in self._fspa.states]
-                ),
+                "labels": _strings([str(state.label) for state in self._fspa.states]),
+                "english_labels": _strings([label_text(self._fspa, state.id) for state in self._fspa.states]),
             }
         lines: list[str] = []
         read_in_steps = tables.step_tables(self._fspa.judge)
@@ -210,12 +208,11 @@ class _Source(StepCode):
         lines = ["switch (signal)", "{"]
         for index, (signal, name) in enumerate(zip(self._fspa.signals, self._signal_fields, strict=True)):
             lines.append(f"{_INDENT}case {index}:")
+            value = "number"
             if signal.type == "bool":
                 lines.append(f"{_INDENT * 2}if (number != 0.0 && number != 1.0) return false;")
-                lines.append(f"{_INDENT * 2}sample.{name} = number == 1.0;")
-            else:
-                lines.append(f"{_INDENT * 2}sample.{name} = number;")
-            lines.append(f"{_INDENT * 2}break;")
+                value = "number == 1.0"
+            lines += [f"{_INDENT * 2}sample.{name} = {value};", f"{_INDENT * 2}break;"]
         return [*lines, "}"]
 
     # --- a step -----------------------------------------------------------------------------------
@@ -390,6 +387,11 @@ def _param_check(param: Param, name: str) -> list[str]:
 
 def _label_texts(labels: LabelTexts) -> str:
     return _list([f"new[] {{{', '.join(map(string_literal, pieces))}}}" for pieces in labels.texts])
+
+
+def _strings(texts: Sequence[str]) -> str:
+    """Return the text of an array initializer of strings."""
+    return _list([*map(string_literal, texts)])
 
 
 def _list(items: Sequence[str]) -> str:

@@ -52,9 +52,10 @@ _FEW = 3
 _VALUES_DOC = "The values of enums, by the name of a signal without its arguments, and the name of the value."
 
 _NAMED_VALUE = (
-    'if (typeof given === "string") {',
-    "  const place = (VALUE_NAMES.get(name) ?? []).indexOf(given);",
-    "  if (place >= 0) return place;",
+    "const names = VALUE_NAMES.get(name);",
+    'if (names && typeof given === "string") {',
+    "  if (names.includes(given)) return names.indexOf(given);",
+    "  throw this.#error(`the signal \\`${name}\\` is \\`${given}\\`, ${notValue(name)}`);",
     "}",
 )
 """The code that takes the name of a value of an enum in place of its number."""

@@ -107,7 +107,6 @@ class _Source(StepCode):
         ]
         present += [] if all(program_.always_in_range) else ["kept"]
         present += [] if self._few_cases else ["moves"]
-        present += ["enums"] if enums else []
         present += ["failures"] if program_.failures else []
         present += ["many_registers"] if fspa.registers and self._variables_are_fields else []
         places = {

@@ -163,7 +163,7 @@ class _Source:
                     for signal in enum.signals
                 ]
             )
-        present = [*snippets.common_blocks(self._program), *(["enums"] if enums else []), *(["bools"] if bools else [])]
+        present = [*snippets.common_blocks(self._program), *(["bools"] if bools else [])]
         return fill_template("monitor.py.txt", pieces, present)
 
     def _enums(self) -> str:

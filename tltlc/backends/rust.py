@@ -125,6 +125,9 @@ class _Source(StepCode):
             "sample": "sample" if fspa.signals else "_",
             "step": step,
             "given": "sample" if give_code else "_",
+            "value_names": RustPrinter.items(
+                [f"&[{', '.join(map(string_literal, signal.values))}]" for signal in fspa.signals], 2
+            ),
             "give": RustPrinter.block(give_code or ["signal < SIGNAL_NAMES.len() && value.is_finite()"], 2),
         }
         return fill_template("monitor.rs.txt", places, present)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from typing import Literal
 
 from tltlc.automaton.fspa import Fspa
 from tltlc.monitor.samples import range_text
@@ -61,8 +62,14 @@ def common_blocks(program_: Program) -> list[str]:
         "states" if program_.tables is None else "tables",
         "exclusive" if program_.exclusive else "single",
         "varies" if program_.fspa.clock_varies else "fixed",
+        enum_block(program_.fspa),
         *(["registers"] if program_.registers else []),
     ]
+
+
+def enum_block(fspa: Fspa) -> Literal["enums", "no_enums"]:
+    """Return the name of the block of a template for specs with enums, or of that for specs without them."""
+    return "enums" if any(signal.values for signal in fspa.signals) else "no_enums"
 
 
 def failure_texts(program_: Program) -> list[tuple[str | None, str | None]]:

@@ -71,7 +71,8 @@ def files(fspa: Fspa, dialect: Dialect) -> Files:
     script, main = (f"{fspa.name}{ending}" for ending in ENDINGS)
     places = {"file": script, "main": main, "title": dialect.title, **dialect.types()}
     places["and_length"] = ", _length" if fspa.clock_varies else ""
-    present = [dialect.version, *(["varies"] if fspa.clock_varies else [])]
+    places["value_names"] = _list(_list(map(dialect.string_literal, signal.values)) for signal in fspa.signals)
+    present = [dialect.version, snippets.enum_block(fspa), *(["varies"] if fspa.clock_varies else [])]
     return {script: _Source(fspa, dialect).text(), main: fill_template("monitor_main.gd.txt", places, present)}
 
 
