@@ -11,10 +11,11 @@ from pathlib import Path
 import pytest
 from hypothesis import HealthCheck, Phase, assume, given, settings
 
-from tests.backends.monitors import FAR
+from tests.backends.monitors import FAR, one_atom
 from tests.backends.strategies import hostile_automata
 from tests.backends.test_javascript import NAMES, Outcome, awkward, printed_rows, rows, trace_of
 from tests.fixtures import cover_and_hide
+from tltlc import compile_text
 from tltlc.automaton.finite.blowup import recursion_room
 from tltlc.automaton.finite.build import build, spec_from_formula
 from tltlc.automaton.fspa import Fspa
@@ -238,6 +239,52 @@ def test_a_host_gets_results_notices_and_errors(interpreter: str, tmp_path: Path
     status, out, err = run_module(interpreter, tmp_path / "use.lua")
     assert (status, err) == (0, "")
     assert out.splitlines() == lines
+
+
+REFUSE = """
+local Monitor = dofile("refusing_monitor.lua")
+local monitor, result = assert(Monitor.new()), {}
+assert(monitor:step(@GOOD@, result) == result and next(result))
+local taken, message = monitor:step(@BAD@, result)
+print(taken, message, next(result), monitor.steps)
+print(monitor:step(@BAD@))
+assert(monitor:step(@GOOD@, result) == result and result.verdict)
+"""
+
+
+def refusing(text: str) -> Fspa:
+    (fspa,) = compile_text(f"signal x: number\n{text}")
+    return replace(fspa, name="refusing")
+
+
+X = SignalValue("x")
+QUOTIENT = replace(one_atom(Op("/", (Const(1.0), X)), spec.Signal("x", "number", None, None)), name="refusing")
+SHARE = refusing("predicate p = clamp(x, -1, 1) spec s { reach p }")
+CUBE = refusing("predicate p = clamp(previous(x * x * x), -1, 1) spec s { reach p }")
+VARYING = refusing("clock varies predicate p = clamp(x, -1, 1) spec s { keep eventually within 2 s p }")
+
+
+@interpreters
+@pytest.mark.parametrize(
+    ("fspa", "bad", "message"),
+    [
+        (SHARE, "{}", "no value for `x`"),
+        (SHARE, '{ x = "1" }', "the signal `x` is not a number"),
+        (QUOTIENT, "{ x = 0 }", "the atom `p` divides by zero"),
+        (QUOTIENT, "{ x = 1e-320 }", "the atom `p` is too large to compute"),
+        (CUBE, "{ x = 1e110 }", "the register `last value of (x * x * x)` is too large to compute"),
+        (VARYING, "{ x = 1 }, -1", "its time since the sample before is -1, not a number of seconds"),
+    ],
+)
+def test_a_refused_step_empties_the_result(
+    fspa: Fspa, bad: str, message: str, interpreter: str, tmp_path: Path
+) -> None:
+    write_module(fspa, tmp_path)
+    good = "{ x = 1 }, 1" if fspa.clock_varies else "{ x = 1 }"
+    (tmp_path / "refuse.lua").write_text(REFUSE.replace("@GOOD@", good).replace("@BAD@", bad))
+    status, out, err = run_module(interpreter, tmp_path / "refuse.lua")
+    assert (status, err) == (0, "")
+    assert out.splitlines() == [f"nil\tstep 2: {message}\tnil\t1", f"nil\tstep 2: {message}"]
 
 
 ALLOCATES = """

@@ -62,8 +62,8 @@ If there are more, each has a function.
 
 _OWN = """
     EDGE_TARGETS FAILURES FIRST_EDGES LEVEL_PROGRESS MOVES STATES STATE_LEVELS STATE_SHAPES abs at_step divide entered
-    exp huge kept max min no_value param part power problem read result self signal signals sqrt state_shape tanh
-    together type value
+    exp huge kept max min no_value param part power problem read refused result self signal signals sqrt state_shape
+    tanh together type value
 """.split()
 """Names that the step function uses in the template; no variable of the program may have them."""
 
@@ -247,7 +247,7 @@ class _Source(StepCode):
             return []
         return [
             f'if type({DT}) ~= "number" or not ({DT} >= 0.0 and {DT} < huge) then',
-            f"  return nil, at_step(self, length_problem({DT}))",
+            f"  return refused(result, at_step(self, length_problem({DT})))",
             "end",
             f"{self._printer.name(DT)} = {DT} + 0.0",
         ]
@@ -277,7 +277,7 @@ class _Source(StepCode):
             lines += [
                 "else",
                 f"  {variable}, problem = read(self, {index}, signals)",
-                "  if problem then return nil, problem end",
+                "  if problem then return refused(result, problem) end",
                 "end",
             ]
         used = self._program.variables_used
@@ -294,7 +294,7 @@ class _Source(StepCode):
         return [
             f"if not ({variable} >= -1.0 and {variable} <= 1.0) then",
             f"  {variable}, problem = kept(self, {string_literal(self._names[index])}, {variable})",
-            "  if problem then return nil, problem end",
+            "  if problem then return refused(result, problem) end",
             "end",
         ]
 
@@ -305,7 +305,7 @@ class _Source(StepCode):
         text = f"the register `{self._fspa.registers[index].name}` "
         lines += self._failure(statements, text)
         if not program_.always_finite[index]:
-            refusal = f"return nil, at_step(self, {string_literal(f'{text}is too large to compute')})"
+            refusal = f"return refused(result, at_step(self, {string_literal(f'{text}is too large to compute')}))"
             lines += [f"if not is_finite({self._printer.name(name)}) then", f"  {refusal}", "end"]
         return lines
 
@@ -318,14 +318,15 @@ class _Source(StepCode):
     def _failure(self, statements: Sequence[Statement], text: str) -> list[str]:
         """Return the code that ends a step if one of the statements failed; its message begins with ``text``."""
         fails = functions_called(statements) & FAILING
-        return [f"if no_value then return nil, at_step(self, {string_literal(text)} .. no_value) end"] if fails else []
+        refusal = f"return refused(result, at_step(self, {string_literal(text)} .. no_value))"
+        return [f"if no_value then {refusal} end"] if fails else []
 
     def _check(self) -> list[str]:
         lines: list[str] = []
         for index, group in self._program.exclusive:
             atoms = [self._printer.name(self._program.atoms[atom]) for atom in group]
             holding = " + ".join(f"({atom} > 0.0 and 1 or 0)" for atom in atoms)
-            refusal = f"return nil, together(self, {index + 1}, {{ {', '.join(atoms)} }})"
+            refusal = f"return refused(result, together(self, {index + 1}, {{ {', '.join(atoms)} }}))"
             lines += [f"if {holding} > 1 then", f"  {refusal}", "end"]
         return lines
 
