@@ -46,8 +46,8 @@ def _measure_engine(engine: Engine, spec: str) -> Record:
         samples = trace(spec)
         trace_path = write_trace(task, samples, task.folder / "trace.txt")
         command = engine.build(task)
-        rows = monitor_rows(engine, task, command, [trace_path])
-        difference = disagreement(rows["generated"], rows["by_hand"], engine.fields)
+        rows = monitor_rows(task, command, [trace_path])
+        difference = disagreement(rows["generated"], rows["by_hand"])
         if difference is not None:
             return {"failed": difference}
         output = _output_of(task, (*command, "time", str(ROUNDS), str(ROUND_S), trace_path.name))
@@ -63,24 +63,22 @@ def _measure_engine(engine: Engine, spec: str) -> Record:
         }
 
 
-def monitor_rows(engine: Engine, task: Task, command: Sequence[str], traces: Sequence[Path]) -> Rows:
-    """Return the rows of both monitors of a driver for each step of some traces, in the order of ``engine.fields``."""
+def monitor_rows(task: Task, command: Sequence[str], traces: Sequence[Path]) -> Rows:
+    """Return the rows of both monitors of a driver for each step of some traces, in the order of ``OUTPUT_FIELDS``."""
     rows: Rows = {author: [] for author in _AUTHORS}
     for line in _output_of(task, (*command, "rows", *(path.name for path in traces))).splitlines():
         author, *cells = line.split("\t")
-        if author in rows and len(cells) == len(engine.fields):
+        if author in rows and len(cells) == len(OUTPUT_FIELDS):
             rows[author].append(tuple(cells))
     return rows
 
 
-def disagreement(
-    actual: Sequence[Sequence[str]], expected: Sequence[Sequence[str]], fields: Sequence[str] = OUTPUT_FIELDS
-) -> str | None:
+def disagreement(actual: Sequence[Sequence[str]], expected: Sequence[Sequence[str]]) -> str | None:
     """Return the first difference of two monitors as text, None if there is none; numbers may differ by 1e-12."""
     if not expected or len(actual) != len(expected):
         return f"{len(actual)} steps, not {len(expected)}"
     for step, (row, right) in enumerate(zip(actual, expected, strict=True), start=1):
-        for field, cell, right_cell in zip(fields, row, right, strict=True):
+        for field, cell, right_cell in zip(OUTPUT_FIELDS, row, right, strict=True):
             if cell != right_cell and not _is_near(cell, right_cell):
                 return f"step {step}: {field} is {cell!r}, not {right_cell!r}"
     return None

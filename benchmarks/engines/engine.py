@@ -36,8 +36,6 @@ OUTPUT_FIELDS: Final = (
     "failed_step",
 )
 """The columns of a row after the monitor's name: the fields of a step; a cell is empty if there is none."""
-FIRST_FIELDS: Final = OUTPUT_FIELDS[: OUTPUT_FIELDS.index("limiting") + 1]
-"""The columns of drivers that do not compare labels in words, and what a trace fails at."""
 
 
 @record
@@ -67,8 +65,7 @@ class Engine:
     ROUNDS SECONDS TRACE`` prints JSON lines. ``compiled`` returns the bytes of both monitors in the
     compiler's output, by author and kind of output. ``sources`` are the generated files that a game
     uses; ``{name}`` in them stands for the name of the spec, and ``{Name}`` for this name in Pascal
-    case. Lines that start with one of ``comments`` contain only a comment. ``fields`` are the columns
-    of a row after the monitor's name.
+    case. Lines that start with one of ``comments`` contain only a comment.
     """
 
     name: str
@@ -80,7 +77,6 @@ class Engine:
     build: Callable[[Task], tuple[str, ...]]
     compiled: Callable[[Task], Mapping[str, Mapping[str, int]]]
     tools: tuple[str, ...] = ()
-    fields: tuple[str, ...] = OUTPUT_FIELDS
 
     def missing(self) -> str | None:
         """Return why the language cannot be measured on this machine; None if it can."""

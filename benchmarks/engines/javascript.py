@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping
 
-from benchmarks.engines.engine import BY_HAND, DRIVERS, FIRST_FIELDS, Engine, Task, fill
+from benchmarks.engines.engine import BY_HAND, DRIVERS, Engine, Task, fill
 
 
 def _build(task: Task) -> tuple[str, ...]:
@@ -38,6 +38,5 @@ ENGINES = (
         build=_build,
         compiled=_compiled_sizes,
         tools=("node",),
-        fields=FIRST_FIELDS,
     ),
 )

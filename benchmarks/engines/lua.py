@@ -7,7 +7,7 @@ import shutil
 from collections.abc import Mapping
 from functools import partial
 
-from benchmarks.engines.engine import BY_HAND, DRIVERS, FIRST_FIELDS, Engine, Task, fill, make
+from benchmarks.engines.engine import BY_HAND, DRIVERS, Engine, Task, fill, make
 
 
 def _build(interpreter: str, task: Task) -> tuple[str, ...]:
@@ -46,7 +46,6 @@ def _engine(interpreter: str, title: str, kind: str, compiler: tuple[str, ...], 
         build=partial(_build, interpreter),
         compiled=partial(_compiled_sizes, kind, compiler, output),
         tools=(interpreter,),
-        fields=FIRST_FIELDS,
     )
 
 

@@ -13,6 +13,14 @@ const LABELS = [
   "F(open_right & near(e_right) | open_left & near(e_left)) & G alive",
   "G alive",
 ];
+const ENGLISH = [
+  "Reach near(s1), then near(s2), then near(s3), then (open_right and near(e_right)) or (open_left and near(e_left)), and keep alive throughout.",
+  "Reach near(s2), then near(s3), then (open_right and near(e_right)) or (open_left and near(e_left)), and keep alive throughout.",
+  "The spec is violated.",
+  "Reach near(s3), then (open_right and near(e_right)) or (open_left and near(e_left)), and keep alive throughout.",
+  "Reach (open_right and near(e_right)) or (open_left and near(e_left)), and keep alive throughout.",
+  "Keep alive throughout.",
+];
 const VERDICTS = ["pending", "pending", "violated", "pending", "pending", "holding"];
 const SWITCH = [0, 1, -1, 2, -1, -1];
 const NEXT = [1, 3, -1, 4, -1, -1];
@@ -87,12 +95,16 @@ export class Monitor extends Episode {
     result.reward = this.advance(progress, state === TRAP, state === TRAP || state === GOAL, LIMIT);
     result.state = state;
     result.label = LABELS[state];
+    result.label_english = ENGLISH[state];
     result.verdict = VERDICTS[state];
     result.accepting = state === GOAL;
     result.done = this.done;
     result.progress = this.progress;
     result.robustness = robustness;
     result.limiting = limiting;
+    result.failed_clause = state === TRAP ? "keep alive" : null;
+    result.failed_atom = state === TRAP ? "alive" : null;
+    result.failed_step = this.failedStep;
     return result;
   }
 }

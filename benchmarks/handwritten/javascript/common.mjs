@@ -12,6 +12,13 @@ export class Result {
   robustness = 0;
   /** @type {string | null} */
   limiting = null;
+  label_english = "";
+  /** @type {string | null} */
+  failed_clause = null;
+  /** @type {string | null} */
+  failed_atom = null;
+  /** @type {number | null} */
+  failed_step = null;
 }
 
 /** An automaton that runs over one episode after another. */
@@ -26,11 +33,14 @@ export class Episode {
     this.steps = 0;
     this.progress = 0;
     this.done = false;
+    /** @type {number | null} */
+    this.failedStep = null;
   }
 
   /** Count a step with this progress; returns its reward. */
   advance(progress, violated, ends, limit) {
     this.steps += 1;
+    if (violated) this.failedStep ??= this.steps;
     const best = progress > this.progress ? progress : this.progress;
     let reward = 0;
     if (!this.done) {

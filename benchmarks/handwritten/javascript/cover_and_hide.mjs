@@ -13,6 +13,13 @@ const LABELS = [
   "F near(exit) & G alive",
   "G alive",
 ];
+const ENGLISH = [
+  "Reach near(s1), then near(s2), then near(exit), and keep alive throughout.",
+  "Reach near(s2), then near(exit), and keep alive throughout.",
+  "The spec is violated.",
+  "Reach near(exit), and keep alive throughout.",
+  "Keep alive throughout.",
+];
 const VERDICTS = ["pending", "pending", "violated", "pending", "holding"];
 const PLACE = [0, 1, -1, 2, -1];
 const NEXT = [1, 3, -1, 4, -1];
@@ -65,12 +72,16 @@ export class Monitor extends Episode {
     result.reward = this.advance(progress, state === TRAP, state === TRAP || state === GOAL, LIMIT);
     result.state = state;
     result.label = LABELS[state];
+    result.label_english = ENGLISH[state];
     result.verdict = VERDICTS[state];
     result.accepting = state === GOAL;
     result.done = this.done;
     result.progress = this.progress;
     result.robustness = robustness;
     result.limiting = limiting;
+    result.failed_clause = state === TRAP ? "keep alive" : null;
+    result.failed_atom = state === TRAP ? "alive" : null;
+    result.failed_step = this.failedStep;
     return result;
   }
 }

@@ -6,6 +6,12 @@ export { Result };
 
 const ATOMS = ["near(s1)", "near(s2)", "near(exit)"];
 const LABELS = ["F(near(s1) & X F(near(s2) & X F near(exit)))", "F(near(s2) & X F near(exit))", "F near(exit)", "true"];
+const ENGLISH = [
+  "Reach near(s1), then near(s2), then near(exit).",
+  "Reach near(s2), then near(exit).",
+  "Reach near(exit).",
+  "Nothing remains to be done.",
+];
 const GOAL = 3;
 const LIMIT = 300;
 
@@ -41,6 +47,7 @@ export class Monitor extends Episode {
     result.reward = this.advance(progress, false, accepting, LIMIT);
     result.state = state;
     result.label = LABELS[state];
+    result.label_english = ENGLISH[state];
     result.verdict = accepting ? "satisfied" : "pending";
     result.accepting = accepting;
     result.done = this.done;

@@ -13,6 +13,14 @@ local LABELS = {
   "F(open_right & near(e_right) | open_left & near(e_left)) & G alive",
   "G alive",
 }
+local ENGLISH = {
+  [0] = "Reach near(s1), then near(s2), then near(s3), then (open_right and near(e_right)) or (open_left and near(e_left)), and keep alive throughout.",
+  "Reach near(s2), then near(s3), then (open_right and near(e_right)) or (open_left and near(e_left)), and keep alive throughout.",
+  "The spec is violated.",
+  "Reach near(s3), then (open_right and near(e_right)) or (open_left and near(e_left)), and keep alive throughout.",
+  "Reach (open_right and near(e_right)) or (open_left and near(e_left)), and keep alive throughout.",
+  "Keep alive throughout.",
+}
 local VERDICTS = { [0] = "pending", "pending", "violated", "pending", "pending", "holding" }
 local SWITCH = { [0] = 0, [1] = 1, [3] = 2 }
 local NEXT = { [0] = 1, [1] = 3, [3] = 4 }
@@ -82,12 +90,16 @@ function Monitor:step(signals, result)
   result.reward = advance(self, progress, state == TRAP, state == TRAP or state == GOAL, LIMIT)
   result.state = state
   result.label = LABELS[state]
+  result.label_english = ENGLISH[state]
   result.verdict = VERDICTS[state]
   result.accepting = state == GOAL
   result.done = self.done
   result.progress = self.progress
   result.robustness = robustness
   result.limiting = limiting
+  result.failed_clause = state == TRAP and "keep alive" or nil
+  result.failed_atom = state == TRAP and "alive" or nil
+  result.failed_step = self.failed_step
   return result
 end
 

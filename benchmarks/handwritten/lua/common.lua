@@ -27,6 +27,7 @@ function common.advance(monitor, progress, violated, ends, limit)
     if violated then reward = reward - (limit - steps) / limit end
     monitor.done = ends or steps >= limit
   end
+  if violated and not monitor.failed_step then monitor.failed_step = steps end
   monitor.steps = steps
   monitor.progress = best
   return reward
@@ -48,6 +49,7 @@ function common.class()
     self.steps = 0
     self.progress = 0.0
     self.done = false
+    self.failed_step = nil
   end
 
   return Monitor

@@ -13,6 +13,13 @@ local LABELS = {
   "F near(exit) & G alive",
   "G alive",
 }
+local ENGLISH = {
+  [0] = "Reach near(s1), then near(s2), then near(exit), and keep alive throughout.",
+  "Reach near(s2), then near(exit), and keep alive throughout.",
+  "The spec is violated.",
+  "Reach near(exit), and keep alive throughout.",
+  "Keep alive throughout.",
+}
 local VERDICTS = { [0] = "pending", "pending", "violated", "pending", "holding" }
 local PLACE = { [0] = 0, [1] = 1, [3] = 2 }
 local NEXT = { [0] = 1, [1] = 3, [3] = 4 }
@@ -74,12 +81,16 @@ function Monitor:step(signals, result)
   result.reward = advance(self, progress, state == TRAP, state == TRAP or state == GOAL, LIMIT)
   result.state = state
   result.label = LABELS[state]
+  result.label_english = ENGLISH[state]
   result.verdict = VERDICTS[state]
   result.accepting = state == GOAL
   result.done = self.done
   result.progress = self.progress
   result.robustness = robustness
   result.limiting = limiting
+  result.failed_clause = state == TRAP and "keep alive" or nil
+  result.failed_atom = state == TRAP and "alive" or nil
+  result.failed_step = self.failed_step
   return result
 end
 

@@ -10,6 +10,12 @@ local LABELS = {
   "F near(exit)",
   "true",
 }
+local ENGLISH = {
+  [0] = "Reach near(s1), then near(s2), then near(exit).",
+  "Reach near(s2), then near(exit).",
+  "Reach near(exit).",
+  "Nothing remains to be done.",
+}
 local GOAL, LIMIT = 3, 300
 
 -- The state is the number of marks that were reached in order.
@@ -44,6 +50,7 @@ function Monitor:step(signals, result)
   result.reward = advance(self, progress, false, accepting, LIMIT)
   result.state = state
   result.label = LABELS[state]
+  result.label_english = ENGLISH[state]
   result.verdict = accepting and "satisfied" or "pending"
   result.accepting = accepting
   result.done = self.done

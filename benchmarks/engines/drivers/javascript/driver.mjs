@@ -35,8 +35,9 @@ function pass(module, samples) {
 function rows(who, samples) {
   pass(MODULES[who], samples)((result) => {
     const { state, label, verdict, accepting, done, progress, reward, robustness, limiting } = result;
-    const cells = [who, state, label, verdict, accepting, done, progress, reward, robustness, limiting ?? ""];
-    console.log(cells.join("\t"));
+    const { label_english, failed_clause, failed_atom, failed_step } = result;
+    const cells = [who, state, label, verdict, accepting, done, progress, reward, robustness, limiting];
+    console.log([...cells, label_english, failed_clause, failed_atom, failed_step].join("\t"));
   });
 }
 

@@ -37,7 +37,8 @@ local function rows(who, samples)
     io.write(who, "\t", string.format("%d", result.state), "\t", result.label, "\t", result.verdict, "\t")
     io.write(tostring(result.accepting), "\t", tostring(result.done), "\t")
     io.write(string.format("%.17g\t%.17g\t%.17g\t", result.progress, result.reward, result.robustness))
-    io.write(result.limiting or "", "\n")
+    io.write(result.limiting or "", "\t", result.label_english, "\t", result.failed_clause or "", "\t")
+    io.write(result.failed_atom or "", "\t", result.failed_step or "", "\n")
   end)
 end
 
