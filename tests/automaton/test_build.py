@@ -307,8 +307,8 @@ def test_labels_of_a_hundred_equal_goals_show_the_remaining_goals() -> None:
 @pytest.mark.parametrize(
     ("text", "label", "accepting", "sentence"),
     [
-        ("X true", "true", False, "The trace must go on for one more step."),
-        ("N false", "false", True, "The trace must end here."),
+        ("X true", "true", False, "The play must not end at this step."),
+        ("N false", "false", True, "The play must end at this step."),
     ],
 )
 def test_the_english_label_says_whether_the_trace_must_go_on(

@@ -62,6 +62,15 @@ def test_labels_use_the_same_words_and_other_notations_the_names() -> None:
     assert label_text(fspa, 1, "ascii") == "F !(time_holding(near(e)) < 3)"
 
 
+def test_labels_list_the_rules_one_by_one() -> None:
+    rules = "keep within 5 s of alarm, seen  keep begins seen implies next always for 9 s not near(e)"
+    fspa = _fspa(f"{rules}  keep times(seen) <= 3")
+    assert {label_text(fspa, state.id) for state in fspa.states if state.verdict != "violated"} == {
+        "Whenever alarm, reach seen within 5 s; whenever seen begins, avoid near(e) for the next 9 s; "
+        "whenever seen begins, the play must not end at that step; and keep seen at most 3 times throughout."
+    }
+
+
 GAME = """
 clock 10 Hz
 signal seen: bool
@@ -84,6 +93,7 @@ signal distance(x: entity): length in [0 m, 50 m]
 """
 SENTENCES = [
     ("keep within 5 s of alarm, hidden", "Whenever alarm, reach hidden within 5 s."),
+    ("keep eventually within 30 s hidden", "At every step, reach hidden within 30 s."),
     ("keep within 60 s of alarm, hidden", "Whenever alarm, reach hidden within 60 s."),
     ("keep near(vault) implies once has(key)", "Whenever near(vault), have has(key) now or before."),
     ("keep times(seen and not hidden) <= 3", "Keep (seen and not hidden) at most 3 times throughout."),
@@ -105,7 +115,7 @@ SENTENCES = [
     (
         "keep begins damage implies next always for 10 s not begins damage",
         "Whenever damage begins, avoid the start of damage for the next 10 s; "
-        "and whenever damage begins, go on for 1 more step.",
+        "and whenever damage begins, the play must not end at that step.",
     ),
     (
         "keep alarm implies all g in guards: eventually within 50 s answers(g)",

@@ -17,6 +17,7 @@ from tltlc.automaton.remembered_formulas import (
     counted,
     goal_in_time,
     kept_rules,
+    listed,
     names_read,
     opposite,
     past_operands,
@@ -70,7 +71,7 @@ class Speaker:
     def spoken(self, formula: Formula) -> Formula:
         """Return a formula with phrases in place of the names of atoms."""
         done: dict[Formula, Formula] = {}
-        for node in with_rules(formula, self._rules).bottom_up():
+        for node in listed(with_rules(formula, self._rules), self._is_rule).bottom_up():
             done[node] = (
                 in_order(node, self._chains, done)
                 or self._answers(node, done)
@@ -83,6 +84,10 @@ class Speaker:
         return done[node]
 
     # --- formulas ---------------------------------------------------------------------------------
+
+    def _is_rule(self, part: Formula) -> bool:
+        """Whether a part of ``G(part & …)`` says that no answer is late, or that no rule is broken."""
+        return self._ruled_out(always(part), "late") is not None or self._ruled_out(always(part), "breach") is not None
 
     def _literal(self, node: Formula) -> Formula | None:
         negated = node.op == "not" and node.args[0].op == "atom"
@@ -124,10 +129,11 @@ class Speaker:
         for part, item in late.items():
             answer = self._answer(item)
             ends = [other for other, owed in due.items() if answer is not None and self._answer(owed) == answer]
-            if answer is None or answer.request is TRUE or not ends:
+            if answer is None or not ends:
                 continue
-            answered = SpokenName(f"{self.noun_text(answer.goal)} within {item.arguments[0]}", "reach")
-            answers[part] = always(implies(self.spoken(answer.request), atom(answered)))
+            answered = atom(SpokenName(f"{self.noun_text(answer.goal)} within {item.arguments[0]}", "reach"))
+            request = self.spoken(answer.request)
+            answers[part] = always(answered if request is TRUE else implies(request, answered))
             answers.update(dict.fromkeys(ends, TRUE))
         if not answers:
             return None

@@ -6,7 +6,7 @@ robustness; this module does the reverse.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Callable, Collection, Mapping
 from typing import NamedTuple, cast
 
 from tltlc.automaton.fspa import Fspa
@@ -184,6 +184,17 @@ def with_rules(formula: Formula, rules: Mapping[str, Formula]) -> Formula:
         else:
             changed = rebuild(node, tuple(done[argument] for argument in node.args))
             done[node] = changed if changed is node else _folded(changed)
+    return done[formula]
+
+
+def listed(formula: Formula, is_rule: Callable[[Formula], bool]) -> Formula:
+    """Return a formula with ``G !late & G !breach`` in place of ``G(!late & !breach)``, where a part is a rule."""
+    done: dict[Formula, Formula] = {}
+    for node in formula.bottom_up():
+        changed = rebuild(node, tuple(done[operand] for operand in node.args))
+        if changed.op == "G" and changed.args[0].op == "and" and any(map(is_rule, changed.args[0].args)):
+            changed = and_(*map(always, changed.args[0].args))
+        done[node] = changed
     return done[formula]
 
 

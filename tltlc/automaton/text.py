@@ -14,8 +14,8 @@ from tltlc.logic.text.printer import ascii_text, english_text, unicode_text, wor
 
 _LONGEST_IN_ENGLISH: Final = 2_000
 """Formulas with more characters get no English sentence: it would be too long to read."""
-_GOES_ON: Final = "The trace must go on for one more step."
-_ENDS: Final = "The trace must end here."
+_GOES_ON: Final = "The play must not end at this step."
+_ENDS: Final = "The play must end at this step."
 
 
 def formula_text(fspa: Fspa, notation: Notation = "english") -> str:
@@ -35,9 +35,8 @@ def label_text(fspa: Fspa, state: int, notation: Notation = "english") -> str:
     """Return the label of a state in a notation: what remains to be satisfied.
 
     ``state`` is the state's id. Over finite traces, two kinds of states get a special English
-    sentence. A rejecting state with the label ``true``, as in ``X true``, says that the trace must
-    go on. An accepting state with the label ``false``, as in ``N false``, says that the trace must
-    end.
+    sentence. A rejecting state with the label ``true``, as in ``X true``, says that the play must
+    not end. An accepting state with the label ``false``, as in ``N false``, says that it must end.
     """
     label, accepting, endless = fspa.states[state].label, fspa.states[state].accepting, fspa.semantics == "infinite"
     if notation == "english" and not endless:

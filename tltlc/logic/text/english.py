@@ -12,7 +12,16 @@ from tltlc.logic.implication import complement
 from tltlc.logic.rewrite import simplify
 from tltlc.logic.text.counts import NUMBERS, CountPrinter
 from tltlc.logic.text.notation import ASCII, write
-from tltlc.logic.text.phrases import bracketed_phrase, has_time, imperative, is_literal, is_state, object_phrase, phrase
+from tltlc.logic.text.phrases import (
+    bracketed_phrase,
+    has_time,
+    has_verb,
+    imperative,
+    is_literal,
+    is_state,
+    object_phrase,
+    phrase,
+)
 from tltlc.logic.text.sequences import next_goal
 
 _PLAIN, _LIST, _CLAUSE, _SCOPED = 0, 1, 2, 3
@@ -78,7 +87,7 @@ def clause_text(formula: Formula, *, endless: bool = False, counts: CountPrinter
 def invariant_text(invariant: Formula, *, endless: bool = False, counts: CountPrinter = NUMBERS) -> str:
     """Return the text of a formula ``G p`` for a list of permanent conditions: ``keep alive`` for ``G alive``."""
     (body,) = invariant.args
-    if _is_condition(body):
+    if _is_condition(body) and not has_verb(body, "reach"):
         return imperative(body, "keep", "avoid")
     return clause_text(invariant, endless=endless, counts=counts)
 
@@ -138,7 +147,7 @@ def _clause(node: Formula, when: str, context: _SentenceContext) -> _RankedClaus
             left, right = (_inner_clause(part, context, when) for part in node.args)
             return f"do both or neither of these: {left}, {right}", _SCOPED
         case "X" | "N":
-            return _next_clause(node, context)
+            return _next_clause(node, when, context)
         case "F":
             return _reach_clause(node, when, context)
         case "G":
@@ -234,6 +243,8 @@ def _throughout_clause(body: Formula, context: _SentenceContext) -> _RankedClaus
         return _join_clauses([_throughout_clause(part, context) for part in _parts_throughout(body)])
     if body.op == "implies" and is_state(body):
         return f"whenever {phrase(body.args[0])}, {_last_clause(body.args[1], context)}", _CLAUSE
+    if has_verb(body, "reach"):
+        return f"at every step, {imperative(body, 'keep', 'avoid')}", _CLAUSE
     if _is_condition(body):
         return imperative(body, "keep", "avoid") + " throughout", _rank_of_state(body)
     if context.endless and _without_negation(body).op == "F":
@@ -299,25 +310,33 @@ def _until_clause(node: Formula, context: _SentenceContext) -> _RankedClause:
     return f"{keep} {until} {_step_noun(stop, context)}, or throughout if there is none", _CLAUSE
 
 
-def _next_clause(node: Formula, context: _SentenceContext) -> _RankedClause:
+def _next_clause(node: Formula, when: str, context: _SentenceContext) -> _RankedClause:
     """Return the clause of a formula that begins with one or more ``X``, or one or more ``N``."""
     ops = ("X", "N") if context.endless else (node.op,)
     count, body = 0, node
     while body.op in ops:
         body, count = body.args[0], count + 1
-    if node.op == "X" and body is TRUE:
-        return f"go on for {context.counts.number(count)} more step{'s' * (count > 1)}", _PLAIN
-    if node.op == "N" and body is FALSE:
-        return "be at the last step" if count == 1 else f"be at one of the last {context.counts.steps(count)}", _PLAIN
+    if body is (TRUE if node.op == "X" else FALSE):
+        return _end_clause(node.op, count, when, context), _LIST
     operator = bounded_operator(_without_negation(body)) if count == 1 else None
     if operator is not None and is_state(operator.body) and (context.endless or node.op + operator.op in ("XF", "NG")):
         return _bounded_clause(operator, context, begins_next=True)
     moment = "at the next step" if count == 1 else f"after {context.counts.time(count)}"
     if "X" not in ops:
-        moment += ", if there is one" if count == 1 else ", if there are that many"
+        moment += ", if there is one" if count == 1 else ", if the play goes on for that long"
     if is_state(body):
         return f"{imperative(body, 'have', 'avoid')} {moment}", _rank_of_state(body) if "X" in ops else _LIST
     return f"{moment}, {_last_clause(body, context)}", _CLAUSE
+
+
+def _end_clause(op: str, count: int, when: str, context: _SentenceContext) -> str:
+    """Return the clause of ``X true`` or ``N false`` with ``count`` operators, about a step ``when``."""
+    if count == 1:
+        moment = "at this step" if when == "now" else when
+        return f"the play must {'not end' if op == 'X' else 'end'} {moment}"
+    if op == "X":
+        return f"the play must go on for at least {context.counts.number(count)} more steps"
+    return f"the play must end at most {context.counts.steps(count - 1)} later"
 
 
 def _bounded_clause(operator: Bounded, context: _SentenceContext, begins_next: bool = False) -> _RankedClause:

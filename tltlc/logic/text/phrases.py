@@ -83,6 +83,11 @@ def has_time(state: Formula) -> bool:
     return isinstance((state.args[0] if state.op == "not" else state).name, SpokenName)
 
 
+def has_verb(state: Formula, verb: str) -> bool:
+    """Whether the formula is an atom that asks for something with this verb."""
+    return isinstance(state.name, SpokenName) and state.name.verb == verb
+
+
 def is_state(formula: Formula) -> bool:
     """Whether the formula has no temporal operator."""
     return not any(part.is_temporal for part in formula.walk())

@@ -14,9 +14,7 @@ static inline bool monitor_step(Monitor *monitor, const Signals *sample, Result 
         "G(!late(5 s, alarm, hidden) & (due(alarm, hidden) -> X true) & "
         "!late(5 s, hidden, out) & (due(hidden, out) -> X true))";
     static const char english[] =
-        "Keep hidden within 5 s after alarm and out within 5 s after hidden throughout; "
-        "whenever hidden is due after alarm, go on for 1 more step; "
-        "and whenever out is due after hidden, go on for 1 more step.";
+        "Whenever alarm, reach hidden within 5 s; and whenever hidden, reach out within 5 s.";
     static const Failure failures[] = {
         {"keep alarm implies eventually within 5 s hidden", "late(5 s, alarm, hidden)"},
         {"keep hidden implies eventually within 5 s out", "late(5 s, hidden, out)"},

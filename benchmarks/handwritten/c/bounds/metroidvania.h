@@ -19,7 +19,9 @@ typedef struct {
 #define ANSWER(guard) "!late(5 s, alarm, answers(" guard ")) & (" DUE(guard) " -> X true)"
 #define BREACH(pit) "breach(the next 10 s, begins falls(" pit "), !begins falls(" pit "))"
 #define LATE(guard) "late(5 s, alarm, answers(" guard "))"
-#define GO_ON(when) "whenever " when ", go on for 1 more step; "
+#define GO_ON(when) "whenever " when ", the play must not end at that step; "
+#define AVOID(event) \
+    "whenever " event " begins, avoid the start of " event " for the next 10 s; " GO_ON(event " begins")
 #define TWICE "keep all p in pits: begins falls(p) implies next always for 10 s not begins falls(p)"
 #define ASLEEP "keep alarm implies all g in guards: eventually within 5 s answers(g)"
 #define HURT "(begins damage)"
@@ -55,13 +57,10 @@ static inline bool monitor_step(Monitor *monitor, const Signals *sample, Result 
         "!breach(the next 1 s, begins damage, !damage) & (" HURT " -> X true) & "
         ANSWER("g1") " & " ANSWER("g2") " & " ANSWER("g3") ")";
     static const char english[] =
-        "Whenever boss_door, have double_jump now or before; keep falls(pit1) does not begin for the next 10 s after "
-        "falls(pit1) begins and falls(pit2) does not begin for the next 10 s after falls(pit2) begins and falls(pit3) "
-        "does not begin for the next 10 s after falls(pit3) begins and not damage for the next 1 s after damage begins "
-        "and answers(g1) within 5 s after alarm and answers(g2) within 5 s after alarm and answers(g3) within 5 s after "
-        "alarm throughout; " GO_ON("falls(pit1) begins") GO_ON("falls(pit2) begins") GO_ON("falls(pit3) begins")
-        GO_ON("damage begins") GO_ON("answers(g1) is due after alarm") GO_ON("answers(g2) is due after alarm")
-        "and whenever answers(g3) is due after alarm, go on for 1 more step.";
+        "Whenever boss_door, have double_jump now or before; " AVOID("falls(pit1)") AVOID("falls(pit2)")
+        AVOID("falls(pit3)") "whenever damage begins, avoid damage for the next 1 s; " GO_ON("damage begins")
+        "whenever alarm, reach answers(g1) within 5 s; whenever alarm, reach answers(g2) within 5 s; "
+        "and whenever alarm, reach answers(g3) within 5 s.";
     static const char *const pits[] = {FALLS("pit1"), FALLS("pit2"), FALLS("pit3")};
     static const char *const guards[] = {DUE("g1"), DUE("g2"), DUE("g3")};
     const bool falls[] = {sample->falls_pit1, sample->falls_pit2, sample->falls_pit3};
