@@ -21,6 +21,7 @@ from tltlc.tools.conformance.formulas import formula
 from tltlc.tools.judge.clauses import Clauses, clauses_of
 from tltlc.tools.judge.judge import Judge
 from tltlc.tools.judge.measures import Measure
+from tltlc.tools.judge.summary import trace_text
 from tltlc.tools.judge.verdict import RejectionCause, TraceDetails, TraceVerdict
 
 LAVA = """
@@ -97,9 +98,28 @@ def test_an_artefact_blames_the_conjuncts_of_its_formula() -> None:
     assert verdict.cause == RejectionCause("broken", 1, ("avoid on_lava",), ("on_lava",))
 
 
-def test_a_conjunct_of_an_artefact_that_words_do_not_fit_is_named_by_its_formula() -> None:
+def test_the_conjuncts_of_an_artefact_are_named_in_words() -> None:
     (fspa,) = compile_text("signal a: bool\nspec s = F(a & N false)")
-    assert [part.text for part in clauses_of(fspa, None).parts] == ["F(a & N false)"]
+    assert [part.text for part in clauses_of(fspa, None).parts] == ["reach a at a step that is the last"]
+    (fspa,) = compile_text("""clock 60 Hz
+        signal a: bool
+        signal b: bool
+        spec s { keep within 9 s of a, b  keep begins b implies next always for 9 s not a  avoid a and b }""")
+    parts = clauses_of(fspa, None).parts
+    assert [part.text for part in parts] == [
+        "whenever a, reach b within 9 s",
+        "whenever b begins, avoid a for the next 9 s",
+        "whenever b begins, the play must not end at that step",
+        "avoid (a and b)",
+    ]
+
+
+def test_a_deadline_that_is_missed_is_told_in_words() -> None:
+    judge = Judge(*_compiled("clock 60 Hz signal a: bool signal b: bool spec s { keep within 9 s of a, b }"))
+    judged = judge.judge("t.csv", _trace(["1,0"] * 542, "a,b"))
+    assert trace_text(judged) == (
+        "not accepted: breaks `keep within 9 s of a, b` at step 541 of 542: `b later than 9 s after a`"
+    )
 
 
 def test_only_clauses_that_have_become_impossible_are_blocked() -> None:
@@ -335,7 +355,12 @@ def test_clauses_about_the_trace_so_far_are_judged_from_its_first_sample() -> No
     rows = ["1,0", "0,1", "1,1", "0,0"]
     cause = _verdict(judge, _trace(rows, "seen,hidden")).cause
     assert cause == RejectionCause(
-        "broken", 3, ("keep times(seen) <= 1",), ("times(seen) > 1",), Measure("times(seen)", 2.0, 1.0, "")
+        "broken",
+        3,
+        ("keep times(seen) <= 1",),
+        ("times(seen) > 1",),
+        Measure("times(seen)", 2.0, 1.0, ""),
+        ("seen more than once",),
     )
     verdict = _verdict(judge, _trace(["1,0", *["0,1"] * 4, "0,0"], "seen,hidden"))
     assert verdict.cause == RejectionCause("unfinished", 6, ("reach time_holding(hidden) >= 0.5 s",))

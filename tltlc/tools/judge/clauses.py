@@ -10,11 +10,13 @@ from typing import Final
 
 from tltlc.automaton.finite.build import DEFAULT_STATE_BUDGET
 from tltlc.automaton.fspa import Fspa
+from tltlc.automaton.memory_phrases import spoken
+from tltlc.automaton.text import times_of
 from tltlc.core.record import record, replace
 from tltlc.core.source import SourceFile, Span
 from tltlc.expression.tree import AtomValue, Before, SignalValue, nodes
 from tltlc.logic.formula import FALSE, TRUE, Formula, and_
-from tltlc.logic.text.english import clause_text, invariant_text
+from tltlc.logic.text.english import clause_text, invariant_text, without_constants
 from tltlc.logic.text.printer import ascii_text
 from tltlc.pipeline import CompileOptions, build_spec
 from tltlc.resolve.spec import Spec
@@ -135,17 +137,36 @@ def _conjuncts_of_source(spec: Spec) -> Iterator[tuple[str, Formula]]:
 def _conjuncts_of_artefact(fspa: Fspa) -> Iterator[tuple[str, Formula]]:
     # In an automaton of another tool, the formula may be only a name that reads like a formula.
     if isinstance(fspa.formula, Formula) and all(isinstance(state.label, Formula) for state in fspa.states):
-        for conjunct in fspa.formula.args if fspa.formula.op == "and" else (fspa.formula,):
-            yield _conjunct_text(conjunct, endless=fspa.semantics == "infinite"), conjunct
+        for conjunct in _whole_rules(fspa, fspa.formula.args if fspa.formula.op == "and" else (fspa.formula,)):
+            yield _conjunct_text(conjunct, fspa), conjunct
 
 
-def _conjunct_text(conjunct: Formula, *, endless: bool) -> str:
+def _whole_rules(fspa: Fspa, conjuncts: Sequence[Formula]) -> list[Formula]:
+    """Join the conjuncts that say one thing together: that no answer is late, and that none is due at the end."""
+    rules: list[Formula] = []
+    for conjunct in conjuncts:
+        joined = (
+            (index, and_(rule, conjunct)) for index, rule in enumerate(rules) if fspa.registers and rule.op == "G"
+        )
+        place = next(((index, both) for index, both in joined if spoken(both, fspa).op == "G"), None)
+        if place is None:
+            rules.append(conjunct)
+        else:
+            rules[place[0]] = place[1]
+    return rules
+
+
+def _conjunct_text(conjunct: Formula, fspa: Fspa) -> str:
     """Return the text of a conjunct in words; as a formula if constants or its size make it hard to say."""
-    nodes_of_conjunct = {*conjunct.walk()}
-    if len(nodes_of_conjunct) > _MOST_NODES or not nodes_of_conjunct.isdisjoint((TRUE, FALSE)):
+    endless = fspa.semantics == "infinite"
+    in_words = spoken(conjunct, fspa)
+    in_words = in_words if endless else without_constants(in_words)
+    nodes_of_conjunct = {*in_words.walk()}
+    is_hard = endless and not nodes_of_conjunct.isdisjoint((TRUE, FALSE))
+    if len(nodes_of_conjunct) > _MOST_NODES or is_hard or in_words in (TRUE, FALSE):
         return ascii_text(conjunct)
-    text = invariant_text if conjunct.op == "G" else clause_text
-    return text(conjunct, endless=endless)
+    text = invariant_text if in_words.op == "G" else clause_text
+    return text(in_words, endless=endless, counts=times_of(fspa))
 
 
 def _as_spec(fspa: Fspa) -> Spec:

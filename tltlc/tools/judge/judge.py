@@ -13,6 +13,7 @@ from tltlc.automaton.text import label_text
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.monitor.errors import MonitorError
 from tltlc.monitor.failure import cause_of
+from tltlc.monitor.failure_words import atom_words
 from tltlc.monitor.guards import holds
 from tltlc.monitor.long_steps import LongSteps, shortest_time
 from tltlc.monitor.monitor import Monitor
@@ -182,6 +183,7 @@ class Judge:
         (values,) = self._samples.of_trace(until, range(run.broken_at - 1, run.broken_at))
         breaking = self._breaking_atoms(values.atoms, run.broken_state)
         atoms = tuple(self._fspa.atoms[atom].name for atom in breaking)
+        words = tuple(atom_words(self._fspa, atom) for atom in breaking) if self._fspa.registers else ()
         measured = self._measure(breaking, self._known(until[-1], values))
         broken = [
             index
@@ -189,8 +191,8 @@ class Judge:
             if runner.can_break and runner.run(until)[0].broken_at is not None
         ]
         if not broken and (blocked := self._blocked(until)):
-            return RejectionCause("blocked", run.broken_at, self._texts(blocked), atoms, measured)
-        return RejectionCause("broken", run.broken_at, self._texts(broken), atoms, measured)
+            return RejectionCause("blocked", run.broken_at, self._texts(blocked), atoms, measured, words)
+        return RejectionCause("broken", run.broken_at, self._texts(broken), atoms, measured, words)
 
     def _unmet(self, samples: Sequence[TraceSample]) -> list[int]:
         """Return the indices of the clauses that would not accept the samples as a whole trace."""

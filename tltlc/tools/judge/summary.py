@@ -171,7 +171,8 @@ def _reason_text(cause: RejectionCause) -> str:
     if measured is not None and measured.value is not None:
         unit = f" {measured.unit}" if measured.unit else ""
         return f": {measured.quantity} is {measured.value:.3g}{unit}"
-    unnamed = [atom for atom in cause.atoms if not any(atom in clause for clause in cause.clauses)]
+    in_words = zip(cause.atoms, cause.words or cause.atoms, strict=True)
+    unnamed = [words for atom, words in in_words if not any(atom in clause for clause in cause.clauses)]
     return f": {_list_text(unnamed)}" if unnamed else ""
 
 

@@ -29,7 +29,8 @@ class RejectionCause:
     clause is to blame, only several together, or if the clauses are not known. ``atoms`` has the
     names of the atoms whose values at ``step`` broke the spec. It is empty for ``late`` and
     ``unfinished``. ``measure`` says how far the first of them that is a comparison was from holding, or
-    from not holding; None if none of them is a comparison.
+    from not holding; None if none of them is a comparison. ``words`` has the same atoms in words, such as
+    "hidden later than 5 s after alarm" for a deadline; it is empty if the spec has no memory.
     """
 
     kind: Kind
@@ -37,6 +38,7 @@ class RejectionCause:
     clauses: tuple[str, ...]
     atoms: tuple[str, ...] = ()
     measure: Measure | None = None
+    words: tuple[str, ...] = ()
 
 
 @record
