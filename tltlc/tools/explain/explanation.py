@@ -303,7 +303,8 @@ def _example_trace(fspa: Fspa, witness: Witness | None) -> ExampleTrace | None:
     cycle: int | None = None
     origins = _origins(fspa)
     for index, move in enumerate(witness.moves):
-        condition, state = _condition_text(_literals(fspa, _shown(fspa, move, origins))), fspa.edges[move.edge].target
+        literals = spoken(_literals(fspa, _shown(fspa, move, origins)), fspa)
+        condition, state = _condition_text(literals), fspa.edges[move.edge].target
         # At the first step, the length counts for nothing.
         seconds = length_of(move.letter, fspa) if index or not fspa.clock_varies else 0.0
         if index == witness.cycle:

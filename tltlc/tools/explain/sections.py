@@ -94,10 +94,7 @@ def _requirements(explanation: Explanation) -> tuple[Section, ...]:
 
 
 def _memory(explanation: Explanation) -> tuple[Section, ...]:
-    items = tuple(
-        value.words if value.maximum is None else f"{value.words}, up to {value.maximum:g} {value.unit}".rstrip()
-        for value in explanation.memory
-    )
+    items = tuple(dict.fromkeys(value.words for value in explanation.memory))
     return (Section("What it remembers", (SectionList("", items),)),) if items else ()
 
 
