@@ -8,8 +8,7 @@ from typing import Final
 from tltlc.automaton.fspa import Fspa
 from tltlc.automaton.memory_phrases import Speaker
 from tltlc.automaton.remembered_formulas import counted, goal_in_time, past_operands, remembered, waited_for
-from tltlc.automaton.value_phrases import VALUES
-from tltlc.core.names import split_name
+from tltlc.automaton.value_phrases import VALUES, value_words
 from tltlc.expression.tree import Before
 from tltlc.logic.formula import TRUE, Formula
 from tltlc.resolve.spec import Register, RegisterKind
@@ -48,7 +47,7 @@ def register_phrases(fspa: Fspa) -> dict[str, str]:
 
 def _phrase(register: Register, registers: Mapping[str, Register], speaker: Speaker) -> str | None:
     if register.kind in VALUES:
-        return VALUES[register.kind].format(", ".join(split_name(register.name)[1]))
+        return value_words(register)
     text = _TEXTS.get(register.kind)
     answer = waited_for(register)
     if answer is not None and answer.request is TRUE:

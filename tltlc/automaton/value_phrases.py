@@ -37,7 +37,7 @@ def value_phrase(name: str, register: Register) -> Phrase | None:
     """Return the phrase of a comparison with ``previous(x)``, ``initial(x)``, ``highest(x)`` or ``lowest(x)``."""
     if not isinstance(name, ComparisonName) or name.operator not in _MIRRORED:
         return None
-    words = VALUES[register.kind].format(", ".join(split_name(register.name)[1]))
+    words = value_words(register)
     if name.left == register.name and not _is_number(name.right):
         left, operator, right = name.right, _MIRRORED[name.operator], words
     elif name.left == register.name:
@@ -48,6 +48,11 @@ def value_phrase(name: str, register: Register) -> Phrase | None:
         return None
     comparison = ComparisonName(left, operator, right)
     return Phrase(comparison, comparison.opposite)
+
+
+def value_words(register: Register) -> str:
+    """Return what a register whose kind is in ``VALUES`` remembers: "the previous coins"."""
+    return VALUES[register.kind].format(", ".join(split_name(register.name)[1]))
 
 
 def count_text(words: str, operator: str, number: str) -> str:

@@ -56,6 +56,13 @@ def test_a_comparison_is_told_with_the_value_that_was_measured(tltlc) -> None:  
     assert out.endswith("not accepted: violated at step 2 of 2: `health <= 20`, clause 3\n")
 
 
+def test_a_value_of_the_step_before_is_told_in_words(tltlc) -> None:  # type: ignore[no-untyped-def]
+    Path("boss.tltl").write_text("signal health in [0, 100]\nspec boss { keep health >= previous(health) }\n")
+    Path("run.csv").write_text("health\n50\n40\n")
+    judged = tltlc("monitor", "boss.tltl", "run.csv")
+    assert judged.err.splitlines()[1] == "at step 2: the previous health is 50, health is 40"
+
+
 def test_the_json_document_has_the_failure_in_fields(tltlc) -> None:  # type: ignore[no-untyped-def]
     document = json.loads(tltlc("monitor", "boss.tltl", trace("0,0,50", "1,0,50"), "--json").out)
     failure = document["failure"]

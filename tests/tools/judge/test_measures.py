@@ -3,7 +3,7 @@ from __future__ import annotations
 import pytest
 
 from tltlc import compile_text
-from tltlc.tools.judge.measures import Measure, measure
+from tltlc.tools.judge.measures import Measure, measure, short_number
 
 SIGNALS = """
 import spatial
@@ -71,3 +71,11 @@ def test_the_sides_of_a_comparison_are_measured_in_their_unit(formula: str, expe
 @pytest.mark.parametrize("formula", ["hot", "near(exit)", "heat / 2 > 0", "sqrt(cold) > 1", "mode is idle"])
 def test_an_atom_without_measurable_sides_has_no_measure(formula: str) -> None:
     assert measured(formula) is None
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [(3.12345, "3.12"), (-0.0, "0"), (12.0, "12"), (1234.5, "1234"), (-1e5, "-100000"), (2.5e6, "2.5e+06")],
+)
+def test_a_short_number_has_three_digits_and_all_those_before_the_point(value: float, text: str) -> None:
+    assert short_number(value) == text

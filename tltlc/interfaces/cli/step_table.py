@@ -11,7 +11,7 @@ from tltlc.automaton.text import label_text
 from tltlc.expression.tree import AtomValue
 from tltlc.monitor.run import RunStep
 from tltlc.program.flags import Flags
-from tltlc.tools.judge.failing_step import short_number
+from tltlc.tools.judge.measures import short_number
 
 _NUMBER: Final = 9
 """The width of a column of numbers with three digits: ``-1.23e-05`` is the longest."""

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from typing import Any
 
 from tltlc.automaton.memory import schedule
+from tltlc.automaton.value_phrases import VALUES, value_words
 from tltlc.core.record import record
 from tltlc.expression.tree import AtomValue, SignalValue, nodes
 from tltlc.monitor.failure_words import atom_words, unmet_words
@@ -13,7 +14,7 @@ from tltlc.monitor.monitor import Monitor
 from tltlc.monitor.run import RunStep
 from tltlc.monitor.traces import TraceSample
 from tltlc.program.flags import Flags
-from tltlc.tools.judge.measures import measure
+from tltlc.tools.judge.measures import measure, short_number
 
 
 @record
@@ -94,19 +95,14 @@ class FailingStep:
         if fspa.atoms[atom].timer is not None:
             return atom_words(fspa, atom)
         measured = measure(fspa, atom, self._known)
-        if measured is not None and measured.value is not None:
-            unit = f" {measured.unit}" if measured.unit else ""
-            return f"{measured.quantity} is {short_number(measured.value)}{unit}"
+        if measured is not None and measured.text is not None:
+            return measured.text
         if AtomValue(fspa.atoms[atom].name) in Flags(fspa, schedule(fspa)):
             return f"{atom_words(fspa, atom)} is {'true' if self._values[atom] > 0.0 else 'false'}"
         read = [node.name for node in nodes(fspa.atoms[atom].expression) if isinstance(node, SignalValue)]
-        measures = [f"{name} is {short_number(self._known[name])}" for name in dict.fromkeys(read)]
+        words = {register.name: value_words(register) for register in fspa.registers if register.kind in VALUES}
+        measures = [f"{words.get(name, name)} is {short_number(self._known[name])}" for name in dict.fromkeys(read)]
         if measured is not None:
             return ", ".join(measures)
         value = f"{atom_words(fspa, atom)} is {short_number(self._values[atom])}"
         return f"{value} ({', '.join(measures)})" if measures else value
-
-
-def short_number(value: float) -> str:
-    """Return a number with three significant digits."""
-    return f"{value + 0.0:.3g}"

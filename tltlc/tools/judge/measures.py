@@ -27,6 +27,13 @@ class Measure:
     gap: float
     unit: str
 
+    @property
+    def text(self) -> str | None:
+        """The side that varies and its value: ``abs(spin) is 3.12 rad/s``; None if both sides vary."""
+        if self.value is None:
+            return None
+        return f"{self.quantity} is {short_number(self.value)} {self.unit}".rstrip()
+
 
 def measure(fspa: Fspa, atom: int, sample: Mapping[str, float]) -> Measure | None:
     """Measure an atom that compares two numbers, at a sample.
@@ -50,6 +57,11 @@ def measure(fspa: Fspa, atom: int, sample: Mapping[str, float]) -> Measure | Non
         return None
     unit = si_unit(_dimension(left, fspa) or _dimension(right, fspa) or PLAIN)
     return Measure(quantity, None if _varies(right) else values[0], abs(values[0] - values[1]), str(unit or ""))
+
+
+def short_number(value: float) -> str:
+    """Return a number with three significant digits, and with all digits before the point: ``3.12``, ``1235``."""
+    return f"{value:.0f}" if 1000.0 <= abs(value) < 1e6 else f"{value + 0.0:.3g}"
 
 
 def _sides(expression: Expression, name: str) -> tuple[Expression, Expression] | None:

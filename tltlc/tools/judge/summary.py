@@ -8,6 +8,7 @@ from statistics import median_low
 from typing import Final
 
 from tltlc.core.record import record
+from tltlc.tools.judge.step_times import seconds_text
 from tltlc.tools.judge.verdict import JudgedTrace, Kind, RejectionCause, TraceVerdict
 
 _ORDER: Final[tuple[Kind, ...]] = ("broken", "blocked", "late", "unfinished")
@@ -149,7 +150,7 @@ def rejection_text(verdict: TraceVerdict, cause: RejectionCause, step_s: float |
     also has the time of the step, from the first sample on.
     """
     if cause.kind in ("broken", "blocked"):
-        time = "" if step_s is None else f" ({(cause.step - 1) * step_s:.6g} s)"
+        time = seconds_text(None if step_s is None else (cause.step - 1) * step_s)
         return f"{_breaking_text(cause)} of {verdict.samples}{time}{_reason_text(cause)}"
     clauses, steps = _list_text(cause.clauses), _steps_of(verdict)
     if cause.kind == "late":
@@ -167,10 +168,8 @@ def _steps_of(verdict: TraceVerdict) -> str:
 
 def _reason_text(cause: RejectionCause) -> str:
     """Return what was measured at the step, or the atoms that the clauses do not name; empty if they name all."""
-    measured = cause.measure
-    if measured is not None and measured.value is not None:
-        unit = f" {measured.unit}" if measured.unit else ""
-        return f": {measured.quantity} is {measured.value:.3g}{unit}"
+    if cause.measure is not None and cause.measure.text is not None:
+        return f": {cause.measure.text}"
     in_words = zip(cause.atoms, cause.words or cause.atoms, strict=True)
     unnamed = [words for atom, words in in_words if not any(atom in clause for clause in cause.clauses)]
     return f": {_list_text(unnamed)}" if unnamed else ""

@@ -27,6 +27,7 @@ from tltlc.monitor.traces import TraceSample, read_trace
 from tltlc.tools.judge.failing_step import FailingStep
 from tltlc.tools.judge.json_values import step_values, summary_values, trace_values
 from tltlc.tools.judge.judge import Judge
+from tltlc.tools.judge.measures import short_number
 from tltlc.tools.judge.pool import judge_files
 from tltlc.tools.judge.summary import summary_text, trace_text
 from tltlc.tools.judge.trace_files import find_traces
@@ -145,8 +146,8 @@ def _samples(fspa: Fspa, name: str, data: bytes) -> Iterator[TraceSample]:
 
 
 def _row_text(fspa: Fspa, row: RunStep) -> str:
-    atoms = ", ".join(f"{atom.name} {value:.3g}" for atom, value in zip(fspa.atoms, row.values, strict=True))
-    return f"step {row.number}: {row.step.verdict}, progress {row.step.progress:.3g}; {atoms}"
+    atoms = ", ".join(f"{atom.name} {short_number(value)}" for atom, value in zip(fspa.atoms, row.values, strict=True))
+    return f"step {row.number}: {row.step.verdict}, progress {short_number(row.step.progress)}; {atoms}"
 
 
 _STEP: Final = {"type": "integer", "minimum": 1, "maximum": 10**12}
