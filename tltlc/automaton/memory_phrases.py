@@ -34,7 +34,7 @@ from tltlc.expression.tree import Before, SignalValue
 from tltlc.logic.formula import TRUE, Formula, always, and_, atom, eventually, implies, not_, or_, rebuild
 from tltlc.logic.implication import complement
 from tltlc.logic.normal_form import negation_normal_form
-from tltlc.logic.text.phrases import bracketed_phrase, is_state, object_phrase, phrase
+from tltlc.logic.text.phrases import bracketed_phrase, is_state, phrase
 from tltlc.resolve.spec import Atom, Register
 
 _UNTIL: Final = ("passed", "lasted", "over", "recent", "lately")
@@ -182,7 +182,7 @@ class Speaker:
                 return None
             state = and_(*present)
             in_words = self.spoken(state)
-            words = self.noun_text(state) if in_words.op == "atom" else object_phrase(in_words)
+            words = self.noun_text(state) if in_words.op == "atom" else bracketed_phrase(in_words)
             text = f"{words} within {self._passed[passed]}"
             return eventually(and_(atom(text), *(done[part] for part in parts if part not in present)))
         kept = or_(*(part for part in (goal.args if goal.op == "or" else (goal,)) if part is not timer))
@@ -247,7 +247,8 @@ class Speaker:
                 else time_text(words, register, operator, number)
                 for operator in (item.base.operator, item.base.opposite_operator)
             )
-            return Phrase(SpokenName(holds), SpokenName(fails))
+            verb = "be" if register.kind == "time_since" else ""
+            return Phrase(*(SpokenName(text, verb, is_past=True) for text in (holds, fails)))
         # A predicate, whose name has no spaces, may compute what looks like a window.
         window = window_of(item.expression) if " " in item.base else None
         if register.kind != "time_since" or window is None:
@@ -259,9 +260,9 @@ class Speaker:
         if register.unit == "s":
             time = f"{border:g} s"
         if is_recent:
-            return Phrase(SpokenName(f"{self.object_text(operand)} in the last {time}"))
+            return Phrase(SpokenName(f"{self.object_text(operand)} in the last {time}", is_past=True))
         fails = SpokenName(f"a step with {self.object_text(operand)} in the last {time}", "have")
-        return Phrase(SpokenName(f"{self.object_text(opposite(operand))} for the last {time}"), fails)
+        return Phrase(SpokenName(f"{self.object_text(opposite(operand))} for the last {time}", is_past=True), fails)
 
     def _timer_phrase(self, item: Atom, register: Register, texts: tuple[str, str]) -> Phrase:
         arguments = self.arguments(item, register)

@@ -48,19 +48,21 @@ class SpokenName(str):
     """The name of an atom for people, such as "hidden within 5 s": a phrase that says when it is about.
 
     ``verb`` asks for it: "reach hidden within 5 s", "keep hidden for 5 s". It is empty where any verb fits.
+    ``is_past`` says that the phrase is about the steps up to this one, such as "hidden for at least 5 s".
     """
 
-    __slots__ = ("verb",)
+    __slots__ = ("is_past", "verb")
     verb: str
+    is_past: bool
 
-    def __new__(cls, text: str, verb: str = "") -> SpokenName:
+    def __new__(cls, text: str, verb: str = "", *, is_past: bool = False) -> SpokenName:
         """Make the name from its text and its verb."""
         name = super().__new__(cls, text)
-        name.verb = verb
+        name.verb, name.is_past = verb, is_past
         return name
 
-    def __getnewargs__(self) -> tuple[str, str]:  # type: ignore[override]
-        return str(self), self.verb
+    def __getnewargs_ex__(self) -> tuple[tuple[str, str], dict[str, bool]]:
+        return (str(self), self.verb), {"is_past": self.is_past}
 
 
 def full_name(base: str, arguments: tuple[str, ...]) -> str:

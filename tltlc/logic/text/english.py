@@ -6,10 +6,20 @@ from collections.abc import Iterator, Sequence
 from typing import Final, NamedTuple
 
 from tltlc.logic import formula as build
-from tltlc.logic.bounded_operators import Bounded, bounded_operator, operands_with_bounds, opposite
+from tltlc.logic.bounded_operators import Bounded, bounded_operator
 from tltlc.logic.formula import FALSE, TRUE, Formula
-from tltlc.logic.implication import complement
 from tltlc.logic.rewrite import simplify
+from tltlc.logic.text.clause_parts import (
+    avoided_sequence,
+    has_rules,
+    implication,
+    instructed,
+    is_about_end,
+    is_condition,
+    listed_parts,
+    rules_of,
+    without_negation,
+)
 from tltlc.logic.text.counts import NUMBERS, CountPrinter
 from tltlc.logic.text.notation import ASCII, write
 from tltlc.logic.text.phrases import (
@@ -87,15 +97,15 @@ def clause_text(formula: Formula, *, endless: bool = False, counts: CountPrinter
 def invariant_text(invariant: Formula, *, endless: bool = False, counts: CountPrinter = NUMBERS) -> str:
     """Return the text of a formula ``G p`` for a list of permanent conditions: ``keep alive`` for ``G alive``."""
     (body,) = invariant.args
-    if _is_condition(body) and not has_verb(body, "reach"):
-        return imperative(body, "keep", "avoid")
+    if is_condition(body) and not has_verb(body, "reach"):
+        return imperative(instructed(body), "keep", "avoid")
     return clause_text(invariant, endless=endless, counts=counts)
 
 
 def recurring_text(recurring: Formula) -> str:
     """Return the text of a formula ``G F p`` for a list of recurring goals: ``reach a`` for ``G F a``."""
     (body,) = recurring.args
-    reach = _without_negation(body)
+    reach = without_negation(body)
     if reach.op != "F":
         return clause_text(recurring, endless=True)
     (goal,) = reach.args
@@ -116,9 +126,7 @@ def without_constants(formula: Formula) -> Formula:
 
     The whole formula may also become a constant.
     """
-    has_constants = any(
-        (TRUE in node.args or FALSE in node.args) and not _is_about_end(node) for node in formula.walk()
-    )
+    has_constants = any((TRUE in node.args or FALSE in node.args) and not is_about_end(node) for node in formula.walk())
     return simplify(formula) if has_constants else formula
 
 
@@ -134,11 +142,13 @@ def _clause(node: Formula, when: str, context: _SentenceContext) -> _RankedClaus
         return _bounded_clause(operator, context)
     match node.op:
         case "not":
-            return _clause(_without_negation(node), when, context)
+            return _clause(without_negation(node), when, context)
         case "and":
-            return _join_clauses([_clause(part, when, context.deeper()) for part in _parts(node)])
+            parts = listed_parts(node, states_first=when != "now")
+            return _join_clauses([clause for part in parts for clause in _clauses(part, when, context.deeper())])
         case "or":
-            return "either " + " or ".join(_inner_clause(part, context, when) for part in _parts(node)), _CLAUSE
+            parts = listed_parts(node, states_first=when != "now")
+            return "either " + " or ".join(_inner_clause(part, context, when) for part in parts), _CLAUSE
         case "implies" if is_state(node.args[0]):
             return f"if {phrase(node.args[0])} {when}, {_last_clause(node.args[1], context, when)}", _CLAUSE
         case "implies":
@@ -156,22 +166,11 @@ def _clause(node: Formula, when: str, context: _SentenceContext) -> _RankedClaus
             return _until_clause(node, context)
 
 
-def _parts(node: Formula) -> list[Formula]:
-    """Return the operands of an ``and`` or ``or``, with all operands without temporal operators joined to one.
-
-    The joined operand stands in the place of the first of them: ``a & F p & b`` gives ``a & b`` and
-    ``F p``.
-    """
-    make = build.and_ if node.op == "and" else build.or_
-    operands = operands_with_bounds(node)
-    states = [part for part in operands if is_state(part)]
-    parts: list[Formula] = []
-    for part in operands:
-        if not is_state(part):
-            parts.append(part)
-        elif part is states[0]:
-            parts.append(make(*states))
-    return list(dict.fromkeys(parts))
+def _clauses(node: Formula, when: str, context: _SentenceContext) -> list[_RankedClause]:
+    """Return the clauses of a part of an ``and``: several for ``G (a & !b)``."""
+    if node.op == "G" and has_rules(node.args[0]) and context.depth > 0:
+        return [_throughout_clause(rule, context) for rule in rules_of(node.args[0])]
+    return [_clause(node, when, context)]
 
 
 def _join_clauses(clauses: Sequence[_RankedClause]) -> _RankedClause:
@@ -179,14 +178,15 @@ def _join_clauses(clauses: Sequence[_RankedClause]) -> _RankedClause:
     texts = [text for text, _ in clauses]
     if len(texts) == 1:
         return clauses[0]
-    separator = "; " if any(rank >= _CLAUSE for _, rank in clauses) else ", "
+    has_commas = any(rank >= _CLAUSE for _, rank in clauses) or sum(", " in text for text in texts) > 1
+    separator = "; " if has_commas else ", "
     return f"{separator.join(texts[:-1])}{separator}and {texts[-1]}", _SCOPED
 
 
 def _reach_clause(node: Formula, when: str, context: _SentenceContext) -> _RankedClause:
     """Return the clause of a formula ``F p``, which names a goal or a sequence of goals: ``reach a, then b``."""
     (body,) = node.args
-    if _without_negation(body).op == "G":
+    if without_negation(body).op == "G":
         return f"from some step on {_inner_clause(body, context)}", _LIST
     if is_state(body) and when != "now":
         return f"reach {object_phrase(body)} {when} or later", _rank_of_state(body)
@@ -206,11 +206,11 @@ def _linked_goals(body: Formula, context: _SentenceContext) -> Iterator[tuple[st
     link = time = ""
     while (following := next_goal(body)) is not None:
         state = build.and_(*(part for part in body.args if is_state(part)))
-        yield link, f"{phrase(state)}{time}"
+        yield link, f"{bracketed_phrase(state) if time else phrase(state)}{time}"
         steps = following.steps
         time = "" if steps is None else f" within {context.counts.time(steps)} after {bracketed_phrase(state)}"
         link, body = following.link, following.body
-    yield link, f"{_goal(body, context)}{time}"
+    yield link, f"{bracketed_phrase(body)}{time}" if time and is_state(body) else f"{_goal(body, context)}{time}"
 
 
 def _goal(body: Formula, context: _SentenceContext) -> str:
@@ -222,14 +222,16 @@ def _goal(body: Formula, context: _SentenceContext) -> str:
     if is_state(body):
         return phrase(body)
     if context.depth > 1 and body.op == "or":
-        options = (phrase(part) if is_literal(part) else f"({_goals(part, context.deeper())})" for part in _parts(body))
+        options = (
+            phrase(part) if is_literal(part) else f"({_goals(part, context.deeper())})" for part in listed_parts(body)
+        )
         return "either " + " or ".join(options)
     if body.op == "and":
         states = [part for part in body.args if is_state(part)]
         temporal = [part for part in body.args if not is_state(part)]
         if states:
             goal, rest = bracketed_phrase(build.and_(*states)), build.and_(*temporal)
-            if _is_about_end(rest):
+            if is_about_end(rest):
                 return f"{goal} at a {_step_noun(rest, context)}"
             return f"{goal} and from that step on {_inner_clause(rest, context)}"
     return f"a {_step_noun(body, context)}"
@@ -237,61 +239,28 @@ def _goal(body: Formula, context: _SentenceContext) -> str:
 
 def _throughout_clause(body: Formula, context: _SentenceContext) -> _RankedClause:
     """Return the clause of ``G body``, such as ``keep a throughout`` or ``whenever a, reach b``."""
-    while _without_negation(body).op == "G":
-        (body,) = _without_negation(body).args
-    if _has_parts(body):
-        return _join_clauses([_throughout_clause(part, context) for part in _parts_throughout(body)])
+    while without_negation(body).op == "G":
+        (body,) = without_negation(body).args
+    if has_rules(body):
+        return _join_clauses([_throughout_clause(part, context) for part in rules_of(body)])
     if body.op == "implies" and is_state(body):
         return f"whenever {phrase(body.args[0])}, {_last_clause(body.args[1], context)}", _CLAUSE
     if has_verb(body, "reach"):
         return f"at every step, {imperative(body, 'keep', 'avoid')}", _CLAUSE
-    if _is_condition(body):
-        return imperative(body, "keep", "avoid") + " throughout", _rank_of_state(body)
-    if context.endless and _without_negation(body).op == "F":
-        (goal,) = _without_negation(body).args
+    if is_condition(body):
+        return imperative(instructed(body), "keep", "avoid") + " throughout", _rank_of_state(body)
+    sequence = avoided_sequence(body)
+    if sequence is not None:
+        return f"avoid the sequence ({_goals(sequence, context)}) throughout", _LIST
+    if context.endless and without_negation(body).op == "F":
+        (goal,) = without_negation(body).args
         if is_state(goal):
             return f"reach {object_phrase(goal)} again and again", _rank_of_state(goal)
         return f"again and again, {_last_clause(body, context)}", _CLAUSE
-    left, right = _implication(_without_negation(body))
+    left, right = implication(without_negation(body))
     if left is not None and right is not None:
         return f"whenever {phrase(left)}, {_last_clause(right, context)}", _CLAUSE
     return f"at every step, {_last_clause(body, context)}", _CLAUSE
-
-
-def _has_parts(body: Formula) -> bool:
-    """Whether the clause of ``G body`` lists the operands of ``body`` one by one."""
-    return body.op == "and" and not all(part.op == "atom" for part in body.args)
-
-
-def _is_condition(body: Formula) -> bool:
-    """Whether the clause of ``G body`` names one thing to keep or to avoid."""
-    return is_state(body) and body.op != "implies" and not _has_parts(body)
-
-
-def _parts_throughout(body: Formula) -> list[Formula]:
-    """Return the operands of an ``and``, with all atoms joined to one operand.
-
-    The joined operand stands in the place of the first atom: ``a & !c & b`` gives ``a & b`` and
-    ``!c``.
-    """
-    atoms = [part for part in body.args if part.op == "atom"]
-    joined = build.and_(*atoms)
-    parts = [joined if part.op == "atom" else part for part in body.args]
-    return list(dict.fromkeys(parts))
-
-
-def _implication(body: Formula) -> tuple[Formula | None, Formula | None]:
-    """Return the condition ``a`` and the consequence ``p`` if ``body`` has the form ``a -> p`` or ``!a | p``.
-
-    The condition has no temporal operator. For any other body, both are None.
-    """
-    if body.op == "implies" and is_state(body.args[0]):
-        return body.args[0], body.args[1]
-    if body.op == "or":
-        negated = [_negation(part) for part in body.args if is_state(part)]
-        if negated:
-            return build.and_(*negated), build.or_(*(part for part in body.args if not is_state(part)))
-    return None, None
 
 
 def _until_clause(node: Formula, context: _SentenceContext) -> _RankedClause:
@@ -314,11 +283,11 @@ def _next_clause(node: Formula, when: str, context: _SentenceContext) -> _Ranked
     """Return the clause of a formula that begins with one or more ``X``, or one or more ``N``."""
     ops = ("X", "N") if context.endless else (node.op,)
     count, body = 0, node
-    while body.op in ops:
-        body, count = body.args[0], count + 1
+    while (following := without_negation(body)).op in ops:
+        body, count = following.args[0], count + 1
     if body is (TRUE if node.op == "X" else FALSE):
         return _end_clause(node.op, count, when, context), _LIST
-    operator = bounded_operator(_without_negation(body)) if count == 1 else None
+    operator = bounded_operator(without_negation(body)) if count == 1 else None
     if operator is not None and is_state(operator.body) and (context.endless or node.op + operator.op in ("XF", "NG")):
         return _bounded_clause(operator, context, begins_next=True)
     moment = "at the next step" if count == 1 else f"after {context.counts.time(count)}"
@@ -326,7 +295,17 @@ def _next_clause(node: Formula, when: str, context: _SentenceContext) -> _Ranked
         moment += ", if there is one" if count == 1 else ", if the play goes on for that long"
     if is_state(body):
         return f"{imperative(body, 'have', 'avoid')} {moment}", _rank_of_state(body) if "X" in ops else _LIST
+    if "X" not in ops and count == 1 and without_negation(body).op == "G":
+        return _later_clause(without_negation(body).args[0], context)
     return f"{moment}, {_last_clause(body, context)}", _CLAUSE
+
+
+def _later_clause(body: Formula, context: _SentenceContext) -> _RankedClause:
+    """Return the clause of ``N G body``: ``keep a from the next step on``."""
+    if is_condition(body) and not has_verb(body, "reach"):
+        return f"{imperative(instructed(body), 'keep', 'avoid')} from the next step on", _LIST
+    text, rank = _throughout_clause(body, context)
+    return f"from the next step on, {f'({text})' if rank == _SCOPED else text}", _CLAUSE
 
 
 def _end_clause(op: str, count: int, when: str, context: _SentenceContext) -> str:
@@ -345,7 +324,7 @@ def _bounded_clause(operator: Bounded, context: _SentenceContext, begins_next: b
     time = "the next " * begins_next + context.counts.time(steps + (begins_next or operator.op == "G"))
     if operator.op == "F":
         if is_state(body):
-            return f"reach {object_phrase(body)} within {time}", _rank_of_state(body)
+            return f"reach {bracketed_phrase(body)} within {time}", _PLAIN
         return f"reach within {time} a {_step_noun(body, context)}", _CLAUSE
     if is_state(body):
         return f"{imperative(body, 'keep', 'avoid')} for {time}", _rank_of_state(body)
@@ -354,7 +333,7 @@ def _bounded_clause(operator: Bounded, context: _SentenceContext, begins_next: b
 
 def _step_noun(node: Formula, context: _SentenceContext) -> str:
     """Return a phrase for a step at which ``node`` holds, for example ``step with near(exit)``."""
-    if _is_about_end(node):
+    if is_about_end(node):
         return f"step that is {'not ' if node.op == 'X' else ''}the last"
     return (
         f"step with {bracketed_phrase(node)}"
@@ -378,24 +357,3 @@ def _last_clause(node: Formula, context: _SentenceContext, when: str = "at that 
 def _rank_of_state(state: Formula) -> int:
     """Return the rank of a clause about ``state``, a formula without temporal operators."""
     return _PLAIN if is_literal(state) else _LIST
-
-
-def _without_negation(node: Formula) -> Formula:
-    """Return an equivalent formula without a leading ``not``: ``F !a`` for ``!G a``."""
-    negations = 0
-    while node.op == "not":
-        node, negations = node.args[0], negations + 1
-    return _negation(node) if negations % 2 else node
-
-
-def _negation(node: Formula) -> Formula:
-    """Return the negation of a formula, with ``not`` pushed through its outermost operator: ``F !a`` for ``G a``."""
-    if node.op == "iff":
-        return build.iff(node.args[0], complement(node.args[1]))
-    operator = bounded_operator(node)
-    return complement(node, depth=1) if operator is None else opposite(operator)
-
-
-def _is_about_end(node: Formula) -> bool:
-    """Whether the formula is ``X true`` (this step is not the last one) or ``N false`` (this step is the last one)."""
-    return (node.op, *node.args) in (("X", TRUE), ("N", FALSE))

@@ -67,10 +67,11 @@ def imperative(state: Formula, keep: str, avoid: str) -> str:
     """Return an instruction with one of two verbs: "keep a" for ``a``, and "avoid a" for ``!a``.
 
     ``keep`` is the verb for formulas without a leading ``not``, ``avoid`` the verb for the others. An atom
-    with a :class:`~tltlc.core.names.SpokenName` may have its own verb.
+    with a :class:`~tltlc.core.names.SpokenName` may have its own verb. "Have" is "have had" if it is about the
+    steps so far: "have hidden for 5 s" would ask for the next 5 s.
     """
-    if isinstance(state.name, SpokenName) and state.name.verb:
-        return f"{state.name.verb} {state.name}"
+    if isinstance(state.name, SpokenName) and (state.name.verb or (state.name.is_past and keep == "have")):
+        return f"{state.name.verb or 'have had'} {state.name}"
     if state.op != "not":
         return f"{keep} {object_phrase(state)}"
     (avoided,) = state.args
