@@ -69,6 +69,8 @@ EXAMPLES = {
     "G(a -> F b | c)": "Whenever a, either have c at that step or reach b at that step or later.",
     "F[0,3] (a & b)": "Reach (a and b) within 3 steps.",
     "F(a & X(b & c | X(b & c)))": "Reach a, then (b and c) within 2 steps after a.",
+    "F(a & X F b) & G c & G !d": "Reach a, then b; keep c throughout; and avoid d throughout.",
+    "F near(s1, 2) & F near(s2, 2)": "Reach near(s1, 2), and reach near(s2, 2).",
     "F(a & X F b) & F(c & X F d)": "Reach a, then b; and reach c, then d.",
     "G(!a | b)": "Avoid (a and not b) throughout.",
     "a & N G(!a | !b)": "Have a now, and avoid (a and b) from the next step on.",

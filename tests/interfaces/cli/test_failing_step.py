@@ -44,8 +44,8 @@ def test_the_step_the_atoms_and_the_clause_are_named(tltlc) -> None:  # type: ig
     assert judged.err.splitlines() == [
         "boss.tltl:7: avoid boss_door and not once sword",
         "at step 3: boss_door is true, sword now or before is false",
-        "what remained before: Reach boss_door; and keep not boss_door or sword now or before throughout, and keep "
-        "health > 20 throughout.",
+        "what remained before: Reach boss_door, avoid (boss_door and not (sword now or before)) throughout, "
+        "and keep health > 20 throughout.",
         "not accepted: violated at step 3 of 4: `boss_door` without `sword now or before`, clause 2",
     ]
 
@@ -66,7 +66,7 @@ def test_a_value_of_the_step_before_is_told_in_words(tltlc) -> None:  # type: ig
 def test_the_json_document_has_the_failure_in_fields(tltlc) -> None:  # type: ignore[no-untyped-def]
     document = json.loads(tltlc("monitor", "boss.tltl", trace("0,0,50", "1,0,50"), "--json").out)
     failure = document["failure"]
-    assert failure.pop("unmet").startswith("Reach boss_door; ")
+    assert failure.pop("unmet").startswith("Reach boss_door, avoid ")
     assert failure == {
         "failed_step": 2,
         "failed_clause": "avoid boss_door and not once sword",
@@ -103,8 +103,8 @@ def test_an_artefact_knows_the_clauses_but_not_their_lines(tltlc) -> None:  # ty
 def test_what_remains_is_told_of_a_trace_that_is_too_short(tltlc) -> None:  # type: ignore[no-untyped-def]
     remains, last = tltlc("monitor", "boss.tltl", trace("0,1,50")).err.splitlines()
     assert (remains, last) == (
-        "what remains: Reach boss_door; and keep not boss_door or sword now or before throughout, and keep health > 20 "
-        "throughout.",
+        "what remains: Reach boss_door, avoid (boss_door and not (sword now or before)) throughout, "
+        "and keep health > 20 throughout.",
         "not accepted: pending after 1 step",
     )
 
@@ -118,12 +118,12 @@ def test_a_test_that_expects_another_verdict_says_why_the_trace_fails(tltlc) -> 
 def test_a_table_has_three_digits_and_says_what_is_to_do(tltlc) -> None:  # type: ignore[no-untyped-def]
     out = tltlc("monitor", "boss.tltl", trace("0,1,51.23456", "1,0,50"), "--table").out
     assert out.splitlines() == [
-        "to do: Reach boss_door; and keep not boss_door or sword now or before throughout, and keep health > 20 "
-        "throughout.",
+        "to do: Reach boss_door, avoid (boss_door and not (sword now or before)) throughout, "
+        "and keep health > 20 throughout.",
         " step  verdict    progress     reward  boss_door  once sword  health > 20  sword",
         "    1  pending           0          0         no         yes         0.39    yes",
         "    2  holding           1          1        yes         yes        0.375     no",
-        "to do: Keep not boss_door or sword now or before throughout, and keep health > 20 throughout.",
+        "to do: Avoid (boss_door and not (sword now or before)) throughout, and keep health > 20 throughout.",
         "accepted: holding after 2 steps",
     ]
 

@@ -34,11 +34,12 @@ from tltlc.logic.text.phrases import (
 )
 from tltlc.logic.text.sequences import next_goal
 
-_PLAIN, _LIST, _CLAUSE, _SCOPED = 0, 1, 2, 3
+_PLAIN, _LIST, _SEQUENCE, _CLAUSE, _SCOPED = range(5)
 """Ranks of English clauses, which decide where a clause needs brackets to be read correctly.
 
 - ``_PLAIN``: nowhere.
-- ``_LIST``: in another list, because both have commas.
+- ``_LIST``: inside another clause.
+- ``_SEQUENCE``: in a longer list, because both have commas.
 - ``_CLAUSE``: beside any other clause.
 - ``_SCOPED``: even as the last part of another clause.
 """
@@ -178,8 +179,9 @@ def _join_clauses(clauses: Sequence[_RankedClause]) -> _RankedClause:
     texts = [text for text, _ in clauses]
     if len(texts) == 1:
         return clauses[0]
-    has_commas = any(rank >= _CLAUSE for _, rank in clauses) or sum(", " in text for text in texts) > 1
-    separator = "; " if has_commas else ", "
+    sequences = sum(rank == _SEQUENCE for _, rank in clauses)
+    is_nested = any(rank >= _CLAUSE for _, rank in clauses) or sequences > 1 or (sequences and len(texts) > 2)
+    separator = "; " if is_nested else ", "
     return f"{separator.join(texts[:-1])}{separator}and {texts[-1]}", _SCOPED
 
 
@@ -190,7 +192,8 @@ def _reach_clause(node: Formula, when: str, context: _SentenceContext) -> _Ranke
         return f"from some step on {_inner_clause(body, context)}", _LIST
     if is_state(body) and when != "now":
         return f"reach {object_phrase(body)} {when} or later", _rank_of_state(body)
-    return f"reach {_goals(body, context)}", _PLAIN if is_literal(body) else _LIST
+    rank = _SEQUENCE if next_goal(body) is not None else _rank_of_state(body)
+    return f"reach {_goals(body, context)}", rank
 
 
 def _goals(body: Formula, context: _SentenceContext) -> str:
