@@ -10,6 +10,8 @@ from tltlc.core.source import SourceFile, Span
 from tltlc.diagnostics.diagnostic import Diagnostic, Edit, Fix, replacement_fix
 from tltlc.grammar import lalr
 from tltlc.grammar.builder import Builder
+from tltlc.grammar.english.readings import sentence
+from tltlc.grammar.english.rules import Reading
 from tltlc.grammar.lexer import END, Token, tokenize
 from tltlc.grammar.mistakes.clauses import is_own_line
 from tltlc.grammar.mistakes.declared_names import declared_names
@@ -76,6 +78,14 @@ def sentence_help(
     words = _words(failure)
     if words.word(0) == "require" or not (failure.tokens[0].text in _KEYWORDS or is_own_line(failure)):
         return diagnostic
+    if not is_imperative(words) or words.word(0) in _KEYWORDS:
+        found = sentence(words)
+        if not found.readings and not found.limit:
+            found = sentence(with_names(words))
+        if found.readings and " ".join(found.readings[0].clauses) != words.text:
+            return _with_readings(failure, diagnostic, found.readings)
+        if found.limit and not found.readings:
+            return replace(diagnostic, help=found.limit, fixes=())
     if not words.find(FILLERS):
         is_spelt = (with_names(words).text != words.text or _compares_bools(words)) and _read(words) is not None
         if diagnostic.fixes and _is_mended(failure, diagnostic.fixes[0]) and not is_spelt:
@@ -114,6 +124,28 @@ def sentence_help(
         help=diagnostic.help if has_both else f"write {quoted}",
         fixes=(replace(fix, title=f"Write {quoted}"),),
     )
+
+
+def _with_readings(failure: ParseFailure, diagnostic: Diagnostic, found: tuple[Reading, ...]) -> Diagnostic:
+    """Return the error with the reading of a sentence as its fix, or with its readings in the help."""
+    valid = [
+        reading
+        for reading in found
+        if is_valid(reading.clauses) and not failure.lacks_fixed_clock(" ".join(reading.clauses))
+    ]
+    if not valid:
+        return diagnostic
+    texts = [" and ".join(f"`{clause}`" for clause in reading.clauses) for reading in valid]
+    if len(valid) > 1:
+        described = [
+            f"{text} {reading.condition}".rstrip() for text, reading in zip(texts, valid, strict=True)
+        ]
+        return replace(diagnostic, help=f"write {', or '.join(described)}", fixes=())
+    span = span_of(failure.tokens[:-1])
+    indent = failure.source.text[: span.start].rpartition("\n")[2]
+    separator = f"\n{indent}" if not indent.strip() else " "
+    fix = replacement_fix(failure.source, span, separator.join(valid[0].clauses))
+    return replace(diagnostic, help=f"write {texts[0]}", fixes=(replace(fix, title=f"Write {texts[0]}"),))
 
 
 def _leads_on(failure: ParseFailure, fix: Fix, read_again: ReadAgain | None, rounds: int = 2) -> bool:

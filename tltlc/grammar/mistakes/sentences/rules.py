@@ -95,7 +95,7 @@ def _answered_by(event: State, words: Words) -> Clauses | None:
             return None
         event, words = joined([event, exception.negated()], "and"), words[: unless[0]]
     answer = answer_of(words)
-    return None if answer is None else _answered(event, answer, is_from_then=False)
+    return None if answer is None else answered(event, answer, is_from_then=False)
 
 
 def _steps(words: Words) -> Words:
@@ -110,7 +110,7 @@ def _implication(words: Words) -> Clauses | None:
     if len(parts) != 2 or words.word(0) == "not" or parts[1].phrase(0, NEVER):
         return None
     event, answer = condition_of(parts[0].without([*SUBJECTS, *phrases("every", "each", "any")])), answer_of(parts[1])
-    return None if event is None or answer is None else _answered(event, answer, is_from_then=False)
+    return None if event is None or answer is None else answered(event, answer, is_from_then=False)
 
 
 def _condition_first(words: Words) -> Clauses | None:
@@ -129,7 +129,7 @@ def _condition_first(words: Words) -> Clauses | None:
         if answer.keyword == "keep" and answer.kind not in ("now", "lasting", "always"):
             return None  # `after a, keep b within 5 s` may ask for one step, or for all of that time
         is_each = phrase in (_EACH if answer.kind == "now" else _LASTING)
-        return _answered(event, answer, is_from_then=phrase in FROM_THEN, is_each=is_each)
+        return answered(event, answer, is_from_then=phrase in FROM_THEN, is_each=is_each)
     return None
 
 
@@ -156,7 +156,7 @@ def _borders(words: Words, first: int) -> list[tuple[int, int]]:
     return [(known[0], known[0])] if len(known) == 1 else []
 
 
-def _answered(event: State, answer: Answer, *, is_from_then: bool, is_each: bool = False) -> Clauses | None:
+def answered(event: State, answer: Answer, *, is_from_then: bool, is_each: bool = False) -> Clauses | None:
     """Return the rule that asks for an answer, if the kind of the condition leaves one reading.
 
     ``is_from_then`` says that the condition is an event that comes before, ``is_each`` that the answer is about
@@ -261,7 +261,7 @@ def _whenever(left: Words, right: State, phrase: tuple[str, ...]) -> Clauses | N
     prohibited = _prohibited(left)
     if prohibited is not None:
         answer = Answer("always" if is_from_then else "now", prohibited.negated())
-        return None if phrase == ("of",) else _answered(right, answer, is_from_then=is_from_then)
+        return None if phrase == ("of",) else answered(right, answer, is_from_then=is_from_then)
     if left.word(0) in ("reach", "avoid", "require"):
         return None
     found = answer_of(left)
@@ -269,13 +269,13 @@ def _whenever(left: Words, right: State, phrase: tuple[str, ...]) -> Clauses | N
         return None  # a goal, or a rule
     if found is None or (phrase == ("of",) and found.kind != "within"):
         return None
-    return _answered(right, found, is_from_then=is_from_then)
+    return answered(right, found, is_from_then=is_from_then)
 
 
 def _never_at(left: Words, right: State, phrase: tuple[str, ...]) -> Clauses | None:
     """Return the rule of `no a on lap 5`."""
     prohibited = _prohibited(left)
-    return None if prohibited is None else _answered(right, Answer("now", prohibited.negated()), is_from_then=False)
+    return None if prohibited is None else answered(right, Answer("now", prohibited.negated()), is_from_then=False)
 
 
 def _prohibited(words: Words) -> State | None:

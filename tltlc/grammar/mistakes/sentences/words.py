@@ -89,6 +89,15 @@ class Words(Sequence[Word]):
         """Return other words of the same text."""
         return Words(self._source, self.names, tuple(words))
 
+    def lines(self) -> list[Words]:
+        """Return the words of each line of the text."""
+        starts = [
+            at
+            for at, word in enumerate(self)
+            if at == 0 or "\n" in self._source.text[self[at - 1].end : word.start]
+        ]
+        return [self[start:stop] for start, stop in pairwise([*starts, len(self)])]
+
     def _spelling(self, word: Word) -> str:
         return word.text if word.is_renamed else self._source.text[word.start : word.end]
 

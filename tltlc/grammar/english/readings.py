@@ -1,0 +1,108 @@
+"""The readings of an English sentence: the clauses that it may mean."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from functools import lru_cache
+from importlib import resources
+from itertools import islice, product
+from typing import TYPE_CHECKING, Any, Final
+
+from tltlc.core.record import record
+from tltlc.grammar.english.phrases import grammar_text
+from tltlc.grammar.english.rules import Reading, Rules
+from tltlc.grammar.english.terminals import Term, terms
+from tltlc.grammar.mistakes.sentences.words import Words
+
+if TYPE_CHECKING:
+    from lark import Lark
+
+_MOST: Final = 64
+"""The most ways in which the parts of one phrase are put together."""
+
+
+@record
+class Sentence:
+    """The readings of a sentence; if there is none, ``limit`` may say why no clause can say it."""
+
+    readings: tuple[Reading, ...] = ()
+    limit: str = ""
+
+
+def sentence(words: Words) -> Sentence:
+    """Return the readings of a sentence; none if it is no sentence of the grammar.
+
+    Several lines may be one sentence, or one for each line.
+    """
+    found = _sentence(words)
+    lines = words.lines()
+    if found.readings or found.limit or len(lines) < 2:
+        return found
+    each = [_sentence(line) for line in lines]
+    if any(len(part.readings) != 1 for part in each):
+        return found
+    return Sentence((Reading(tuple(clause for part in each for clause in part.readings[0].clauses)),))
+
+
+def _sentence(words: Words) -> Sentence:
+    from lark import Token, Tree
+    from lark.exceptions import UnexpectedInput
+
+    parser, vocabulary = _parser()
+    found = terms(words, vocabulary)
+    if not found:
+        return Sentence()
+    try:
+        tree = parser.parse([Token(term.kind, term) for term in found])  # type: ignore[arg-type, call-overload]
+    except UnexpectedInput:
+        return Sentence()
+    assert isinstance(tree, Tree)
+    unique: dict[tuple[str, ...], Reading] = {}
+    rules = Rules(words.names.step_s)
+    for reading in _values(tree.children[0], rules):
+        unique.setdefault(reading.clauses, reading)
+    return Sentence(tuple(unique.values()), next(iter(rules.limits), ""))
+
+
+@lru_cache(maxsize=1)
+def _parser() -> tuple[Lark, Mapping[str, str]]:
+    """Return the parser, and the terminals of the English words; it is built at the first mistake alone."""
+    from lark import Lark
+    from lark.lexer import Lexer
+
+    class Terms(Lexer):
+        def __init__(self, conf: Any) -> None:
+            pass
+
+        def lex(self, data: Any, parser_state: Any = None) -> Iterator[Any]:
+            return iter(data)
+
+    structure = resources.files(__package__).joinpath("sentences.lark").read_text(encoding="utf-8")
+    parser = Lark(f"{structure}\n{grammar_text()}\n", parser="earley", lexer=Terms, ambiguity="explicit")
+    words = {terminal.pattern.value: terminal.name for terminal in parser.terminals if terminal.pattern is not None}
+    return parser, words
+
+
+def _values(node: Any, rules: Rules) -> list[Any]:
+    """Return what a node of the tree may mean; equal meanings of an ambiguous node count once."""
+    if isinstance(node, str):
+        return [node.value]  # type: ignore[attr-defined]
+    if node.data == "_ambig":
+        return _unique([value for child in node.children for value in _values(child, rules)])
+    function = getattr(rules, node.data)
+    results: list[Any] = []
+    for parts in islice(product(*(_values(child, rules) for child in node.children)), _MOST):
+        value = function(*parts)
+        if isinstance(value, list):
+            results += value
+        elif value is not None:
+            results.append(value)
+    return _unique(results)
+
+
+def _unique(values: list[Any]) -> list[Any]:
+    found: list[Any] = []
+    for value in values:
+        if value not in found:
+            found.append(value)
+    return found

@@ -1,0 +1,386 @@
+"""What the rules of English sentences mean: the clauses that say the same, and when a sentence has several readings."""
+
+from __future__ import annotations
+
+from typing import Final, Literal
+
+from tltlc.core.record import record, replace
+from tltlc.grammar.english.conditions import Conditions, Counted, Duration, Event, Held, as_state
+from tltlc.grammar.english.terminals import Term
+from tltlc.grammar.mistakes.sentences.answers import Answer
+from tltlc.grammar.mistakes.sentences.rules import answered
+from tltlc.grammar.mistakes.sentences.states import AND, ATOM, OR, State, joined
+from tltlc.grammar.mistakes.sentences.vocabulary import NEGATED_SIGN
+
+When = Literal["when", "while", "as long as", "each", "after"]
+
+
+@record
+class Reading:
+    """Clauses that a sentence may mean. ``condition`` says when it means them, if there are other readings."""
+
+    clauses: tuple[str, ...]
+    condition: str = ""
+
+
+@record
+class Asked:
+    """What a rule asks for after its condition, and when the words mean that.
+
+    ``is_formula`` says that the answer is a formula about later steps, which counts from the step of the condition.
+    """
+
+    answer: Answer
+    condition: str = ""
+    is_formula: bool = False
+
+
+_LASTING: Final = ("while", "as long as")
+_MOST_STEPS: Final = 8
+"""The most steps after which a condition must hold: a monitor has up to two to the power of them states."""
+
+_Found = Reading | list[Reading] | None
+
+
+class Rules(Conditions):
+    """The meanings of the rules of the grammar."""
+
+    def both_sentences(self, first: Reading, second: Reading) -> Reading | None:
+        if first.condition or second.condition:
+            return None
+        return Reading((*first.clauses, *second.clauses))
+
+    # Rules without a condition.
+
+    def avoid(self, event: Event) -> _Found:
+        if isinstance(event, Counted):
+            return _limited(event, NEGATED_SIGN.get(event.sign or ">=", ""))
+        if isinstance(event, Held):
+            return _never_held(event)
+        return Reading((f"avoid {event.text}",))
+
+    def avoid_until(self, state: State, end: State) -> _Found:
+        return Reading((f"require {state.negated().at(ATOM)} weak_until {end.at(ATOM)}",))
+
+    def avoid_between(self, state: State, start: State, end: State) -> _Found:
+        return _between(state.negated(), start, end)
+
+    def between_avoid(self, start: State, end: State, state: State) -> _Found:
+        return _between(state.negated(), start, end)
+
+    def keep_between(self, state: State, start: State, end: State) -> _Found:
+        return _between(state, start, end)
+
+    def between_keep(self, start: State, end: State, state: State) -> _Found:
+        return _between(state, start, end)
+
+    def avoid_without(self, state: State, event: Event) -> _Found:
+        condition = as_state(event)
+        return None if condition is None else Reading((f"keep {state.at(OR)} implies {condition.at(OR)}",))
+
+    def avoid_without_before(self, state: State, event: Event) -> _Found:
+        condition = as_state(event)
+        return None if condition is None else Reading((f"keep {state.at(OR)} implies once {condition.at(ATOM)}",))
+
+    def avoid_first(self, state: State, duration: Duration) -> _Found:
+        return Reading((f"require always for {duration.text} {state.negated().at(ATOM)}",))
+
+    def keep(self, state: State) -> _Found:
+        return Reading((f"keep {state.text}",))
+
+    def count_within(self, counted: Counted, duration: Duration) -> None:
+        self.limits.append(
+            f"`times({counted.state.text})` counts from the first step on, and no clause can say how often something "
+            f"happens within {duration.text}: let the game count, and supply the number"
+        )
+
+    def limit_count(self, counted: Counted) -> _Found:
+        if counted.state.text.startswith("not "):
+            return None
+        return _limited(counted, counted.sign)
+
+    def count_before(self, sign: str, number: str, state: State) -> Counted:
+        return Counted(state, sign, number)
+
+    def count_behind(self, state: State, sign: str, number: str) -> Counted:
+        return Counted(state, sign, number)
+
+    def number_before(self, sign: str, number: Term, state: State) -> Counted | None:
+        return Counted(state, sign, number.text)
+
+    def exactly_behind(self, state: State, number: str) -> Counted:
+        return Counted(state, "==", number)
+
+    def exactly_before(self, number: str, state: State) -> Counted:
+        return Counted(state, "==", number)
+
+    def keep_short(self, state: State, duration: Duration) -> _Found:
+        return _never_held(Held(state, ">", duration))
+
+    def lasts_at_least(self, state: State, duration: Duration) -> _Found:
+        return Reading((f"keep begins {state.at(ATOM)} implies always for {duration.text} {state.at(ATOM)}",))
+
+    def lasts_exactly(self, state: State, duration: Duration) -> _Found:
+        held = f"always for {duration.text} {state.at(ATOM)}"
+        over = f"weak_next after {duration.text} {state.negated().at(ATOM)}"
+        return Reading((f"keep begins {state.at(ATOM)} implies ({held}) and {over}",))
+
+    def goals(self, *events: Event) -> list[State] | None:
+        if any(isinstance(event, Counted) for event in events[1:]):
+            return None  # the count begins at the first step, not at the goal before
+        states = [_goal(event) for event in events]
+        known = [state for state in states if state is not None]
+        return [known] if len(known) == len(states) else None  # type: ignore[return-value]
+
+    def reach(self, goals: list[State]) -> _Found:
+        return Reading((f"reach {' then '.join(goal.at(OR) for goal in goals)}",))
+
+    def reach_within(self, event: Event, duration: Duration) -> _Found:
+        state = as_state(event)
+        if isinstance(event, Counted) or state is None:
+            return None
+        return Reading((f"require eventually within {duration.text} {state.at(ATOM)}",))
+
+    def within_reach(self, duration: Duration, event: Event) -> _Found:
+        return self.reach_within(event, duration)
+
+    def reach_without(self, event: Event, avoided: State) -> _Found:
+        state = as_state(event)
+        if state is None or state.level > ATOM:
+            return None
+        return Reading((f"reach {state.text}", f"avoid {avoided.text}"))
+
+    def only_when(self, state: State, event: Event) -> _Found:
+        condition = as_state(event)
+        return None if condition is None else Reading((f"keep {state.at(OR)} implies {condition.at(OR)}",))
+
+    def only_after(self, state: State, event: Event) -> _Found:
+        condition = as_state(event)
+        return None if condition is None else Reading((f"keep {state.at(OR)} implies once {condition.at(ATOM)}",))
+
+    def exactly_when(self, state: State, event: Event) -> _Found:
+        condition = as_state(event)
+        return None if condition is None else Reading((f"keep {state.at(OR)} iff {condition.at(OR)}",))
+
+    def at_end(self, state: State) -> _Found:
+        return Reading((f"require eventually always {state.at(ATOM)}",))
+
+    def at_start(self, state: State) -> _Found:
+        return Reading((f"require {state.text}",))
+
+    # Rules with a condition.
+
+    def when(self) -> When:
+        return "when"
+
+    def while_(self) -> When:
+        return "while"
+
+    def as_long_as(self) -> When:
+        return "as long as"
+
+    def each(self) -> When:
+        return "each"
+
+    def after(self) -> When:
+        return "after"
+
+    def first(self, when: When, event: Event, answers: list[Asked]) -> _Found:
+        return _conditional(when, event, answers)
+
+    def last(self, answers: list[Asked], when: When, event: Event) -> _Found:
+        state, answer = as_state(event), answers[0].answer
+        if answer.kind == "always" and answer.is_negative and when != "after" and not answers[1:]:
+            return _conditional(when, event, [Asked(replace(answer, kind="now"))])
+        is_plain = answer.kind == "now" and not answer.keyword and not answer.state.text.startswith("not ")
+        if when == "while" and is_plain and state is not None and not answers[0].is_formula:
+            goal = joined([answer.state, state], "and")
+            return [
+                Reading((f"reach {goal.text}",), "if it is a goal"),
+                Reading((f"keep {state.at(OR)} implies {answer.state.at(OR)}",), f"for each step with `{state.text}`"),
+            ]
+        if state and answer.kind == "now" and answer.keyword == "keep" and when != "after":
+            return Reading((f"keep {state.at(OR)} implies {answer.state.at(OR)}",))
+        return _conditional(when, event, answers)
+
+    def implies(self, event: Event, answers: list[Asked]) -> _Found:
+        return _conditional("when", event, answers)
+
+    def unless(self, answers: list[Asked], event: Event) -> _Found:
+        condition = as_state(event)
+        if condition is None or len(answers) > 1:
+            return None
+        answer = answers[0].answer
+        if answer.kind == "always" and answer.is_negative:
+            return Reading((f"keep {answer.state.negated().at(OR)} implies {condition.at(OR)}",))
+        if answer.kind == "now" and answer.keyword == "keep":
+            return Reading((f"keep {answer.state.at(OR)} or {condition.at(OR)}",))
+        return None
+
+    def unless_first(self, event: Event, answers: list[Asked]) -> _Found:
+        return self.unless(answers, event)
+
+    def answers(self, *asked: Asked) -> list[list[Asked]]:
+        return [[*asked]]
+
+    def now(self, state: State) -> Asked:
+        return Asked(Answer("now", state))
+
+    def within(self, state: State, duration: Duration) -> Asked:
+        return Asked(Answer("within", state, duration.text))
+
+    def within_first(self, duration: Duration, state: State) -> Asked:
+        return self.within(state, duration)
+
+    def reach_later(self, state: State) -> Asked:
+        return Asked(Answer("eventually", state, keyword="reach"))
+
+    def keep_now(self, state: State) -> Asked:
+        return Asked(Answer("now", state, keyword="keep"))
+
+    def lasting(self, state: State, duration: Duration) -> Asked:
+        return Asked(Answer("lasting", state, duration.text))
+
+    def lasting_first(self, duration: Duration, state: State) -> Asked:
+        return self.lasting(state, duration)
+
+    def lasting_exactly(self, state: State, duration: Duration) -> Asked:
+        over = f"weak_next after {duration.text} {state.negated().at(ATOM)}"
+        return Asked(Answer("now", State(f"(always for {duration.text} {state.at(ATOM)}) and {over}", 1)), is_formula=True)
+
+    def lasting_then(self, state: State, duration: Duration, following: State) -> Asked:
+        over = f"weak_next after {duration.text} {following.at(ATOM)}"
+        return Asked(Answer("now", State(f"(always for {duration.text} {state.at(ATOM)}) and {over}", 1)), is_formula=True)
+
+    def delayed(self, state: State, duration: Duration) -> Asked | None:
+        # A monitor remembers each step with the condition until the answer is due.
+        return Asked(Answer("delayed", state, duration.text)) if self.steps(duration) <= _MOST_STEPS else None
+
+    def delayed_first(self, duration: Duration, state: State) -> Asked | None:
+        return self.delayed(state, duration)
+
+    def until(self, state: State, end: State) -> Asked:
+        operator = "weak_until" if state.text.startswith("not ") else "until"
+        return Asked(Answer("now", State(f"({state.at(ATOM)} {operator} {end.at(ATOM)})")), is_formula=True)
+
+    def keep_until(self, state: State, end: State) -> Asked | list[Asked]:
+        return self.until(state, end) if state.text.startswith("not ") else _until(state, end)
+
+    def later(self, state: State) -> Asked:
+        return Asked(Answer("eventually", state))
+
+    def forever(self, state: State) -> Asked:
+        return Asked(Answer("always", state))
+
+    def next(self, state: State) -> Asked:
+        return Asked(Answer("now", State(f"weak_next {state.at(ATOM)}")), is_formula=True)
+
+    def never(self, state: State) -> Asked:
+        return Asked(Answer("always", state.negated(), "", True))
+
+    def never_for(self, state: State, duration: Duration) -> Asked:
+        return Asked(Answer("lasting", state.negated(), duration.text, True))
+
+    def never_until(self, state: State, end: State) -> Asked:
+        return Asked(Answer("now", State(f"({state.negated().at(ATOM)} weak_until {end.at(ATOM)})")), is_formula=True)
+
+    def stops(self, state: State) -> Asked:
+        return Asked(Answer("next", state.negated()))
+
+
+def _goal(event: Event) -> State | None:
+    """Return a goal: `hidden for 4 steps` is reached at the first of them, so that what comes before it is not counted."""
+    if not isinstance(event, Held) or not event.duration.is_steps or event.sign not in ("", ">="):
+        return as_state(event)
+    number, held = event.duration.number, event.state.at(ATOM)
+    if not number.isdecimal() or int(number) < 2:
+        return None
+    last = int(number) - 1
+    return State(f"(always for {number} steps {held}) and next after {last} step{'s' * (last > 1)} {held}", AND)
+
+
+def _limited(counted: Counted, sign: str) -> Reading | None:
+    event, number = counted.state, counted.number
+    if sign in ("<=", "<"):
+        if (sign, number) in (("<=", "0"), ("<", "1")):
+            return Reading((f"avoid {event.text}",))
+        return Reading((f"keep times({event.text}) {sign} {number}",))
+    if sign in (">=", ">"):
+        return Reading((f"reach times({event.text}) {sign} {number}",))
+    if sign == "==":
+        return Reading((f"reach times({event.text}) >= {number}", f"keep times({event.text}) <= {number}"))
+    return None
+
+
+def _never_held(held: Held) -> Reading | None:
+    """Return the rule that no stretch of steps with a condition is so long."""
+    if held.sign not in (">", ">="):
+        return None  # it may not hold all that time, or not at any step of it
+    state, duration = held.state, held.duration
+    if not duration.is_steps:
+        return Reading((f"avoid time_holding({state.text}) {held.sign} {duration.text}",))
+    if not duration.number.isdecimal():
+        return None
+    most = int(duration.number) - (held.sign == ">=")
+    if most < 1:
+        return Reading((f"avoid {state.text}",)) if most == 0 else None
+    steps = f"{most} step{'s' * (most > 1)}"
+    return Reading((f"avoid always for {steps} {state.at(ATOM)} and next after {steps} {state.at(ATOM)}",))
+
+
+def _between(state: State, start: State, end: State) -> Reading | None:
+    if max(start.level, end.level) > ATOM:
+        return None
+    begun = start.text if start.text.startswith(("begins ", "ends ")) else f"begins {start.at(ATOM)}"
+    return Reading((f"keep {begun} implies ({state.at(ATOM)} weak_until {end.at(ATOM)})",))
+
+
+def _until(state: State, end: State) -> list[Asked]:
+    weak, strong = (State(f"({state.at(ATOM)} {operator} {end.at(ATOM)})") for operator in ("weak_until", "until"))
+    return [
+        Asked(Answer("now", strong), f"if `{end.text}` must come", is_formula=True),
+        Asked(Answer("now", weak), "if it need not", is_formula=True),
+    ]
+
+
+def _conditional(when: When, event: Event, answers: list[Asked]) -> _Found:
+    state = as_state(event)
+    if state is None:
+        return None
+    readings = [_answer_readings(when, event, state, asked) for asked in answers]
+    if len(readings) == 1:
+        return readings[0]
+    if any(len(found) != 1 or found[0].condition for found in readings):
+        return None
+    return Reading(tuple(clause for found in readings for clause in found[0].clauses))
+
+
+def _answer_readings(when: When, event: Event, state: State, asked: Asked) -> list[Reading]:
+    answer = asked.answer
+    if asked.is_formula:
+        return [Reading((f"keep {state.at(OR)} implies {answer.state.at(OR)}",), asked.condition)]
+    if when in _LASTING and answer.keyword == "reach":
+        return []
+    is_each = when in _LASTING or (when == "each" and answer.kind == "now")
+    clauses = answered(state, answer, is_from_then=when == "after", is_each=is_each)
+    if clauses is not None:
+        return [Reading(clauses, asked.condition)]
+    if asked.condition:
+        return []
+    return _two_readings(state, answer)
+
+
+def _two_readings(event: State, answer: Answer) -> list[Reading]:
+    """Return the readings of `when a keep b`, `when a avoid b` and `after a, b`: at each step, or from then on."""
+    if answer.kind not in ("now", "always"):
+        return []
+    a, b = event.at(OR), answer.state
+    if answer.is_negative:
+        each = f"avoid {joined([event, b.negated()], 'and').text}"
+    else:
+        each = f"keep {a} implies {b.at(OR)}"
+    return [
+        Reading((each,), f"for each step with `{event.text}`"),
+        Reading((f"keep {a} implies always {b.at(ATOM)}",), "if it holds from then on"),
+    ]
+

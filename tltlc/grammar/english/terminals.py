@@ -1,0 +1,116 @@
+"""Turn the words of a clause into the terminals of the grammar of English sentences."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Final
+
+from tltlc.core.record import record
+from tltlc.grammar.english.phrases import DROPPED
+from tltlc.grammar.keywords import UNITS_ELSEWHERE
+from tltlc.grammar.mistakes.declared_names import DeclaredName
+from tltlc.grammar.mistakes.sentences.kinds import call_end
+from tltlc.grammar.mistakes.sentences.words import NUMBER_WORDS, Words
+
+_SIGNS: Final = {
+    "LESS": "SIGN", "AT_MOST": "SIGN", "MORE": "SIGN", "AT_LEAST": "SIGN", "EQUALS": "_EQUALS", "UNEQUAL": "_UNEQUAL",
+    "EQUAL": "_EQUALS", "PLUS": "PLUS", "MINUS": "MINUS", "TIMES_SIGN": "MUL", "DIVIDE": "DIV", "LPAR": "_LPAR",
+    "RPAR": "_RPAR", "LBRACE": "_LBRACE", "RBRACE": "_RBRACE", "COMMA": "_COMMA", "COLON": "_COLON",
+}  # fmt: skip
+_TIME_UNITS: Final = ("s", "ms", "min", "h", "step", "steps")
+_COUNTS: Final = ("times",)
+_NUMBERS: Final = ("previous", "initial", "highest", "lowest", "time_since", "time_holding", "abs", "min", "max")
+_LETTERS: Final = {"Y": "previously", "O": "once", "H": "historically", "S": "since"}
+"""Maps the letters of logic for the past to words."""
+_PREVIOUS: Final = ("previous", "prev")
+
+
+@record
+class Term:
+    """A terminal of the grammar: its kind, its text in the language, and the declaration of a name."""
+
+    kind: str
+    text: str
+    declared: DeclaredName | None = None
+
+
+def terms(words: Words, vocabulary: Mapping[str, str]) -> list[Term] | None:
+    """Return the terminals of words; None if one has no meaning in a sentence.
+
+    ``vocabulary`` maps the English words of the grammar to their terminals.
+    """
+    found: list[Term] = []
+    for term in _terms(words, vocabulary):
+        if term is None:
+            return None
+        found.append(term)
+    return found
+
+
+def _terms(words: Words, vocabulary: Mapping[str, str]) -> Iterator[Term | None]:
+    at = 0
+    while at < len(words):
+        word, start = words[at], at
+        at += 1
+        if (letter := _LETTERS.get(words[start:at].text)) and letter not in words.names.names:
+            yield Term(vocabulary[letter], letter)
+        elif word.is_name:
+            at = call_end(words, start)
+            yield _name(words[start:at])
+        elif word.type in _SIGNS and word.text not in ("min", "max"):
+            if word.type == "EQUAL" and at < len(words) and words[at].type == "MORE":
+                at += 1
+                yield Term("_ARROW", "=>")
+            else:
+                yield Term(_SIGNS[word.type], word.text)
+        elif number := words.number(start):
+            yield Term("NUMBER", number)
+        elif found := [name for name, known in words.names.names.items() if word.text in known.values]:
+            yield Term("VALUE", word.text, words.names.names[found[0]] if len(found) == 1 else None)
+        elif start and words.number(start - 1) and (unit := _unit(word.text)) and word.text not in words.names.names:
+            yield Term("TIME_UNIT" if unit in _TIME_UNITS else "UNIT", unit)
+        elif word.type == "UNIT" or (word.text == "%" and start):
+            yield Term("UNIT", word.text)
+        elif word.text in vocabulary:
+            yield Term(vocabulary[word.text], word.text)
+        elif word.text not in DROPPED:
+            yield None
+
+
+def _unit(word: str) -> str:
+    unit = UNITS_ELSEWHERE.get(word.lower(), word)
+    return unit if unit in (*_TIME_UNITS, "Hz") else ""
+
+
+def _name(words: Words) -> Term | None:
+    """Return the terminal of a name, perhaps with arguments."""
+    name, text = words[0].text, words.text
+    declared = words.names.names.get(name)
+    if declared is None:
+        inner = words[2:-1] if len(words) > 2 else words[:0]
+        of = inner.declared(0) if len(inner) == 1 else None
+        if name in _PREVIOUS and of is not None and of.type == "enum":
+            return Term("PREVIOUS_ENUM", inner.text, of)
+        if name.startswith(("previous(", "initial(")):
+            return _value_of(words.names.names.get(name.partition("(")[2].rstrip(")")), text)
+        if name.startswith("times("):
+            return Term("INT", text)
+        if name in _COUNTS:
+            return Term("INT", text)
+        return _value_of(of, text) if name in _NUMBERS else Term("BOOL", text)
+    if any(declared_inside.members for at in range(len(words)) if (declared_inside := words.declared(at))):
+        return None  # a group, which stands for several values
+    is_called = len(words) > 1
+    if bool(declared.parameters) != is_called:
+        return None
+    if declared.type == "enum":
+        return Term("ENUM", text, declared)
+    if declared.type == "int":
+        return Term("INT", text, declared)
+    if declared.type == "bool" or declared.keyword in ("predicate", "let"):
+        return Term("BOOL", text, declared)
+    return Term("REAL", text, declared) if declared.type else None
+
+
+def _value_of(declared: DeclaredName | None, text: str) -> Term:
+    return Term("INT" if declared is not None and declared.type == "int" else "REAL", text, declared)
