@@ -54,8 +54,8 @@ def test_a_second_value_after_is_not_gets_no_fix() -> None:
 
 def test_the_value_of_an_enum_at_the_step_before_gets_a_form() -> None:
     error = error_of("keep previous(mode) is alert implies a")[1]
-    assert error.fixes == ()
-    assert error.help == "write `previously (mode is alert)`, which is false at the first step"
+    assert error.help == "write `keep previously (mode is alert) implies a`"
+    assert [edit.text for fix in error.fixes for edit in fix.edits] == ["keep previously (mode is alert) implies a"]
     compile_text(f"{NAMES}spec s {{ keep previously (mode is alert) implies a }}")
 
 

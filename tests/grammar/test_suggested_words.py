@@ -80,9 +80,6 @@ def test_a_rule_that_requires_something_gets_both_readings(verb: str) -> None:
     ("clause", "readings"),
     [
         ("avoid b implies a for the next 3 s", ["always for 3 s a"]),
-        ("keep b implies a for at least 3 s", ["always for 3 s a", "time_holding(a) >= 3 s"]),
-        ("avoid phase falls by more than 2", ["previous(phase) - phase > 2", "highest(phase) - phase > 2"]),
-        ("avoid phase rises by 2", ["phase - previous(phase) >= 2", "phase - lowest(phase) >= 2"]),
     ],
 )
 def test_the_readings_of_an_unclear_formula_compile(clause: str, readings: list[str]) -> None:
@@ -110,6 +107,7 @@ def test_a_change_that_must_not_happen_is_no_limit_of_the_value(clause: str) -> 
     [
         ("phase never below 2", [2, 3]),
         ("phase never drops below 2", [2, 3]),
+        ("avoid phase drops below 2", [2, 3]),
         ("phase never more than 2", [0, 1, 2]),
         ("phase equals 2", [2]),
         ("phase is equal to 2", [2]),
@@ -175,7 +173,6 @@ def test_a_number_of_frames_that_is_no_round_time_gets_no_fix() -> None:
 @pytest.mark.parametrize(
     ("clause", "help_"),
     [
-        ("avoid phase drops below 2", "compare the value itself: `phase < 2`"),
         ("avoid phase drops by 2 within 5 s", "let the game supply how much `phase` has changed in that time"),
         ("keep always within 2 s of a, b", "write `keep within 2 s of a, b`"),
         (

@@ -8,7 +8,7 @@ from typing import Final, Literal, cast
 
 from tltlc.core.record import replace
 from tltlc.core.source import SourceFile
-from tltlc.diagnostics.diagnostic import Label, replacement_fix
+from tltlc.diagnostics.diagnostic import Diagnostic, Label, replacement_fix
 from tltlc.expression.tree import Expression, nodes
 from tltlc.expression.tree import ParamValue as ParamNode
 from tltlc.expression.tree import SignalValue as SignalNode
@@ -58,7 +58,7 @@ def resolve_spec(declaration: SpecDecl, groups: tuple[tuple[str, ...], ...], env
             else:
                 _store_metadata(clause, metadata, env)
         except ResolutionError as failure:
-            log.add(failure.diagnostic)
+            log.add(_in_whole(failure.diagnostic, clause, source))
             complete = False
     limit = None
     try:
@@ -133,6 +133,13 @@ def vocabulary(used: Iterable[str], groups: Iterable[Sequence[str]], context: Co
 
 def _atoms(names: Iterable[str], context: Context) -> tuple[Atom, ...]:
     return tuple(context.atoms[name] for name in names)
+
+
+def _in_whole(diagnostic: Diagnostic | None, clause: Clause, source: SourceFile) -> Diagnostic | None:
+    """Return an error with a fix for the whole clause, if one for the part in error would lead to the next error."""
+    from tltlc.grammar.english.clauses import with_whole_clause
+
+    return None if diagnostic is None else with_whole_clause(diagnostic, source, clause.span)
 
 
 def _conjuncts(clause: Clause, env: Env) -> list[Conjunct]:

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from typing import Any, Final, Literal
+from collections.abc import Sequence
+from typing import Final, Literal
 
 from tltlc.core.record import record
 from tltlc.grammar.english.terminals import Term
+from tltlc.grammar.mistakes.declared_names import DeclaredNames
 from tltlc.grammar.mistakes.sentences.states import AND, ATOM, OR, State, joined
 from tltlc.grammar.mistakes.sentences.vocabulary import NEGATED_SIGN
 
@@ -42,10 +43,12 @@ class Duration:
 
     @property
     def is_steps(self) -> bool:
+        """Whether the time is a number of steps."""
         return self.unit in ("step", "steps")
 
     @property
     def text(self) -> str:
+        """The time in the language."""
         return f"{self.number} {self.unit}"
 
 
@@ -115,22 +118,24 @@ def _equality(left: Number, sign: str, right: Number) -> State | None:
     if len(ends) == 2 and other.text in ends:
         state = comparison(number, ">=" if other.text == ends[1] else "<=", other)
     else:
+        if sign == "!=":
+            return State(f"{number.text} < {other.text} or {number.text} > {other.text}", OR)
         state = State(f"{number.text} >= {other.text} and {number.text} <= {other.text}", AND)
     return state if sign == "==" or state is None else state.negated()
 
 
-_Found = Any
 _SIGN_OF: Final = {"at_most": "<=", "at_least": ">=", "more": ">", "less": "<"}
 
 
 class Conditions:
     """The meanings of the rules for numbers, conditions, and what lasts or is counted.
 
-    ``step_s`` is the length of a step in seconds, 0 if it is not known.
+    ``names`` are what the file declares.
     """
 
-    def __init__(self, step_s: float = 0.0) -> None:
-        self._step_s = step_s
+    def __init__(self, names: DeclaredNames) -> None:
+        self._step_s = names.step_s
+        self._names = names.names
         self.limits: list[str] = []
         """Why no clause can say a sentence."""
 
@@ -146,7 +151,9 @@ class Conditions:
     def variable(self, term: Term) -> Number:
         return Number(term.text, term)
 
-    def constant(self, number: Term, unit: Term | None = None) -> Number:
+    def constant(self, number: Term, unit: Term | None = None) -> Number | None:
+        if unit is not None and unit.text in ("step", "steps"):
+            return None
         return Number(number.text if unit is None else f"{number.text} {unit.text}")
 
     def previous(self, term: Term) -> Number:
@@ -196,10 +203,10 @@ class Conditions:
 
     # Bools and enums.
 
-    def bool(self, term: Term) -> State:
+    def named(self, term: Term) -> State:
         return State(term.text)
 
-    def not_bool(self, term: Term) -> State:
+    def not_named(self, term: Term) -> State:
         return State(term.text).negated()
 
     def begins(self, term: Term) -> State:
@@ -218,9 +225,10 @@ class Conditions:
         return State(f"historically {state.at(ATOM)}")
 
     def value_alone(self, value: Term) -> State | None:
-        if value.declared is None:
-            return None
-        return None
+        names = [name for name, known in self._names.items() if known is value.declared]
+        return (
+            State(f"{names[0]} is {value.text}", ATOM, f"{names[0]} is not {value.text}") if len(names) == 1 else None
+        )
 
     def enum(self, name: Term, *values: Term) -> State | None:
         assert name.declared is not None
@@ -315,7 +323,8 @@ class Conditions:
         return state.negated()
 
     def bracketed(self, event: Event) -> State | None:
-        return as_state(event)
+        state = as_state(event)
+        return state if state is None or state.level == ATOM else State(f"({state.text})")
 
     def all_of(self, *events: Event | list[State]) -> State | None:
         return _joined(_flat(events), "and")
@@ -327,7 +336,7 @@ class Conditions:
         states = [as_state(event) for event in _flat(events)]
         return _joined([state.negated() for state in states if state is not None], "and")
 
-    def list(self, *states: State) -> list[State]:
+    def members(self, *states: State) -> list[State]:
         return [*states]
 
     def exactly_one(self, states: list[State]) -> State | None:
@@ -404,6 +413,3 @@ def _joined(events: Sequence[Event], operator: str) -> State | None:
     states = [as_state(event) for event in events]
     known = [state for state in states if state is not None]
     return joined(known, operator) if len(known) == len(states) else None
-
-
-Meaning = Callable[..., _Found]

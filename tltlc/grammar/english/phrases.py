@@ -15,10 +15,11 @@ DROPPED: Final = frozenset("the a an player hero character user you they we it t
 """Words that say nothing, because a spec is always about the player."""
 
 PHRASES: Final[Mapping[str, str]] = {
-    "when": "if|when|as soon as|given|given that|in case|in case that",
+    "when": "when|as soon as|given|given that|in case|in case that",
     "while": "while|during|whilst",
     "as_long_as": "as long as|so long as|for as long as",
-    "each_time": "whenever|every time|each time|any time|anytime|everytime|for each|for every|at every|at each|on each|"
+    "each_time": "whenever|every time|each time|any time|anytime|everytime|for each|for every|at every|at each|"
+    "on each|"
     "on every|on|upon",
     "after": "after|once|right after|immediately after|directly after|following|from",
     "unless": "unless|except when|except if|except while|except during|except|unless when",
@@ -35,7 +36,8 @@ PHRASES: Final[Mapping[str, str]] = {
     "should never|may not|may never|mustn't|shouldn't|won't",
     "must_not": _CANNOT,
     "must": _MUST,
-    "may": "can|may|can only|may only|is allowed|allowed|can happen|can be|may be|is possible|may happen|happens|must only",
+    "may": "can|may|can only|may only|is allowed|allowed|can happen|can be|may be|is possible|may happen|"
+    "happens|must only",
     "allowed": "allowed|permitted|ever|at all|at any time|at any point|happens|happen",
     "again": "again|a second time|more than once|twice",
     "always": "always|at all times|all the time|the whole time|throughout|at every step|on every step|every frame|"
@@ -50,52 +52,60 @@ PHRASES: Final[Mapping[str, str]] = {
     "for": "for|for the next|for a full|for a total of|for next|for at least|at least for|for the following",
     "within": "within|in|by|in under|in less than|in at most|in no more than|no later than|within at most|inside|"
     "in the next|within the next|in next|within next|at most|not later than|under",
-    "first": "in the first|within the first|during the first|in first|within first|during first|for the first|for first",
-    "at_most_for": "for at most|for no more than|for no longer than|no longer than|at most for|not longer than|for up to|"
+    "first": "in the first|within the first|during the first|in first|within first|during first|for the first|"
+    "for first",
+    "at_most_for": "for at most|for no more than|for no longer than|no longer than|at most for|not longer than|"
+    "for up to|"
     "for a maximum of|never for longer than|never for more than|never longer than",
     "exactly": "exactly|precisely",
     "later": "later|afterwards|after that|after",
     "straight": "straight|in a row|without a break|continuously|or more|in one go|at a stretch|without interruption",
     "or_more": "or more|or longer",
     "last": "last|previous",
-    "then": "then|and then|followed by|and after that|and finally|, then|, and then|next",
-    "at_once": "at the same time|simultaneously|together|at the same step|at same time|at same step|on the same frame",
+    "then": "then|and then|and after that|and finally|, then|, and then",
+    "at_once": "at the same time|simultaneously|together|at the same step|at same time|at same step|"
+    "on the same frame",
     "at_end": "at the end|in the end|at the last step|on the last step|at end|in end|at last step|on last step",
     "at_start": "at the start|at the beginning|on the first step|at the first step|initially|at start|at beginning|"
     "on first step|at first step|in the beginning",
     "times": "times|time|x",
     "times_relation": "only",
-    "not": "not|isn't|don't|doesn't|aren't|do not|does not|no",
-    "be": "is|are|be|being|been|am|gets|get|has|have|having|stays|stay|remains|remain|holds|hold|happens|happen|occurs|"
-    "occur|is being|must be|should be|is on|is active|is set|was|is true|stays true|remains true|is held|be true|"
+    "not": "not|isn't|don't|doesn't|aren't|do not|does not",
+    "be": "is|are|be|being|am|gets|get|has|have|having|stays|stay|remains|remain|holds|hold|happens|happen|occurs|"
+    "occur|is being|must be|should be|is on|is active|is set|is true|stays true|remains true|is held|be true|"
     "happens to be|stays on|is still|still",
-    "is": "is|equals|is equal to|equal to|is exactly|has|at|in|on|stays|remains|stays at|remains at|is at|is in|is on|"
+    "is": "is|equals|is equal to|equal to|is exactly|has|at|in|on|stays|remains|stays at|remains at|is at|is in|"
+    "is on|"
     "has been|be|was|stays in",
     "is_not": "is not|isn't|not|not in|not at|is not in|is not at|does not equal|differs from|is other than",
     "is_never": "is never|never",
     "when_it": "at|when|on|from|as of|since|during|at time of|at moment of|before",
     "in_any": "within|in|in any|per|during|within any|every",
     "was": "was|was previously|had been|was before",
-    "becomes": "becomes|become|turns|turn|changes to|change to|turns to|turns into|goes to|go to|switches to|switch to|"
+    "becomes": "becomes|become|turns|turn|changes to|change to|turns to|turns into|goes to|go to|switches to|"
+    "switch to|"
     "enters|enter|is set to|gets|moves to|changes into|reaches|starts being|turned|became",
     "leaves": "leaves|leave|stops being|exits|is left|is no longer",
-    "begins": "begins|begin|starts|start|started|begun|triggers|is triggered|goes up|turns on|happens|appears|turns true",
+    "begins": "begins|begin|starts|start|started|begun|triggers|is triggered|goes up|turns on|happens|appears|"
+    "turns true",
     "begins_first": "begins|start of|beginning of|begin of|onset of",
-    "ends": "ends|end|ended|stops|stop|stopped|is over|goes down|turns off|is finished|disappears|turns false|finishes",
-    "was_before": "before|was true before|on the step before|on step before|on the frame before|was true|on frame before|"
+    "ends": "ends|end|ended|stops|stop|stopped|is over|goes down|turns off|is finished|disappears|turns false|"
+    "finishes",
+    "was_before": "was true before|on the step before|on step before|on the frame before|on frame before|"
     "at the step before|at step before|was true on step before",
-    "ever": "ever|has ever happened|has happened|has been|was ever|before|already|has already happened|has ever been|"
-    "at least once before",
+    "ever": "ever|has ever happened|has happened|has already happened",
     "previously": "previously|prev",
     "at_most": "at most|no more than|not more than|up to|maximum|max|maximum of|not above|less than or equal to|"
     "not exceed|no higher than|no longer than|not longer than",
     "at_least": "at least|no less than|not less than|no fewer than|minimum|min|minimum of|not below|"
     "greater than or equal to|more than or equal to",
-    "more": "more than|greater than|above|over|exceeds|higher than|longer than|goes above|rises above|goes over|go above|"
+    "more": "more than|greater than|above|over|exceeds|higher than|longer than|goes above|rises above|goes over|"
+    "go above|"
     "rise above|exceed|bigger than|larger than",
     "less": "less than|fewer than|below|under|lower than|shorter than|drops below|falls below|goes below|drops under|"
     "falls under|drop below|fall below|go below|drop under|fall under|smaller than",
-    "falls": "decreases|decrease|drops|drop|falls|fall|shrinks|shrink|goes down|go down|is reduced|gets lower|is lowered|"
+    "falls": "decreases|decrease|drops|drop|falls|fall|shrinks|shrink|goes down|go down|is reduced|gets lower|"
+    "is lowered|"
     "goes lower|is decreased|sinks|declines",
     "rises": "increases|increase|rises|rise|grows|grow|goes up|go up|gets higher|is raised|goes higher|is increased",
     "stays": "stays the same|stay the same|stays same|stay same|remains the same|remains same|does not change|"

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from functools import lru_cache
-from importlib import resources
 from itertools import islice, product
 from typing import TYPE_CHECKING, Any, Final
 
 from tltlc.core.record import record
 from tltlc.grammar.english.phrases import grammar_text
 from tltlc.grammar.english.rules import Reading, Rules
-from tltlc.grammar.english.terminals import Term, terms
+from tltlc.grammar.english.terminals import terms
 from tltlc.grammar.mistakes.sentences.words import Words
 
 if TYPE_CHECKING:
@@ -53,12 +52,12 @@ def _sentence(words: Words) -> Sentence:
     if not found:
         return Sentence()
     try:
-        tree = parser.parse([Token(term.kind, term) for term in found])  # type: ignore[arg-type, call-overload]
+        tree = parser.parse([Token(term.kind, term) for term in found])
     except UnexpectedInput:
         return Sentence()
     assert isinstance(tree, Tree)
     unique: dict[tuple[str, ...], Reading] = {}
-    rules = Rules(words.names.step_s)
+    rules = Rules(words.names)
     for reading in _values(tree.children[0], rules):
         unique.setdefault(reading.clauses, reading)
     return Sentence(tuple(unique.values()), next(iter(rules.limits), ""))
@@ -67,6 +66,8 @@ def _sentence(words: Words) -> Sentence:
 @lru_cache(maxsize=1)
 def _parser() -> tuple[Lark, Mapping[str, str]]:
     """Return the parser, and the terminals of the English words; it is built at the first mistake alone."""
+    from pathlib import Path
+
     from lark import Lark
     from lark.lexer import Lexer
 
@@ -77,7 +78,7 @@ def _parser() -> tuple[Lark, Mapping[str, str]]:
         def lex(self, data: Any, parser_state: Any = None) -> Iterator[Any]:
             return iter(data)
 
-    structure = resources.files(__package__).joinpath("sentences.lark").read_text(encoding="utf-8")
+    structure = Path(__file__).with_name("sentences.lark").read_text(encoding="utf-8")
     parser = Lark(f"{structure}\n{grammar_text()}\n", parser="earley", lexer=Terms, ambiguity="explicit")
     words = {terminal.pattern.value: terminal.name for terminal in parser.terminals if terminal.pattern is not None}
     return parser, words

@@ -5,14 +5,14 @@ from __future__ import annotations
 from typing import Final, Literal
 
 from tltlc.core.record import record, replace
-from tltlc.grammar.english.conditions import Conditions, Counted, Duration, Event, Held, as_state
+from tltlc.grammar.english.conditions import Change, Conditions, Counted, Duration, Event, Held, Number, as_state
 from tltlc.grammar.english.terminals import Term
 from tltlc.grammar.mistakes.sentences.answers import Answer
 from tltlc.grammar.mistakes.sentences.rules import answered
 from tltlc.grammar.mistakes.sentences.states import AND, ATOM, OR, State, joined
 from tltlc.grammar.mistakes.sentences.vocabulary import NEGATED_SIGN
 
-When = Literal["when", "while", "as long as", "each", "after"]
+When = Literal["if", "when", "while", "as long as", "each", "after"]
 
 
 @record
@@ -35,6 +35,13 @@ class Asked:
     is_formula: bool = False
 
 
+@record
+class Goals:
+    """Goals one after the other."""
+
+    states: tuple[State, ...]
+
+
 _LASTING: Final = ("while", "as long as")
 _MOST_STEPS: Final = 8
 """The most steps after which a condition must hold: a monitor has up to two to the power of them states."""
@@ -46,9 +53,14 @@ class Rules(Conditions):
     """The meanings of the rules of the grammar."""
 
     def both_sentences(self, first: Reading, second: Reading) -> Reading | None:
-        if first.condition or second.condition:
+        if first.condition or second.condition or any(" or " in clause for clause in first.clauses):
             return None
         return Reading((*first.clauses, *second.clauses))
+
+    def plain_and_rule(self, first: Reading, when: When, event: Event, answers: list[Asked]) -> Reading | None:
+        rule = _conditional(when, event, answers)
+        second = rule[0] if isinstance(rule, list) and len(rule) == 1 else rule
+        return self.both_sentences(first, second) if isinstance(second, Reading) else None
 
     # Rules without a condition.
 
@@ -57,9 +69,17 @@ class Rules(Conditions):
             return _limited(event, NEGATED_SIGN.get(event.sign or ">=", ""))
         if isinstance(event, Held):
             return _never_held(event)
+        if event.level == OR:
+            return None  # both, or the second is another rule
         return Reading((f"avoid {event.text}",))
 
+    def avoid_change(self, term: Term, change: Change, step: Number) -> _Found:
+        state = self.changes_by_compared(term, change, ">=", step)
+        return None if state is None else Reading((f"avoid {state.text}",))
+
     def avoid_until(self, state: State, end: State) -> _Found:
+        if not _are_simple(state, end):
+            return None
         return Reading((f"require {state.negated().at(ATOM)} weak_until {end.at(ATOM)}",))
 
     def avoid_between(self, state: State, start: State, end: State) -> _Found:
@@ -76,7 +96,11 @@ class Rules(Conditions):
 
     def avoid_without(self, state: State, event: Event) -> _Found:
         condition = as_state(event)
-        return None if condition is None else Reading((f"keep {state.at(OR)} implies {condition.at(OR)}",))
+        return (
+            None
+            if condition is None or not _are_simple(state, condition)
+            else Reading((f"keep {state.at(OR)} implies {condition.at(OR)}",))
+        )
 
     def avoid_without_before(self, state: State, event: Event) -> _Found:
         condition = as_state(event)
@@ -125,20 +149,20 @@ class Rules(Conditions):
         over = f"weak_next after {duration.text} {state.negated().at(ATOM)}"
         return Reading((f"keep begins {state.at(ATOM)} implies ({held}) and {over}",))
 
-    def goals(self, *events: Event) -> list[State] | None:
+    def goals(self, *events: Event) -> Goals | None:
         if any(isinstance(event, Counted) for event in events[1:]):
             return None  # the count begins at the first step, not at the goal before
         states = [_goal(event) for event in events]
         known = [state for state in states if state is not None]
-        return [known] if len(known) == len(states) else None  # type: ignore[return-value]
+        return Goals(tuple(known)) if len(known) == len(states) else None
 
-    def reach(self, goals: list[State]) -> _Found:
-        return Reading((f"reach {' then '.join(goal.at(OR) for goal in goals)}",))
+    def reach(self, goals: Goals) -> _Found:
+        return Reading((f"reach {' then '.join(goal.at(OR) for goal in goals.states)}",))
 
     def reach_within(self, event: Event, duration: Duration) -> _Found:
         state = as_state(event)
-        if isinstance(event, Counted) or state is None:
-            return None
+        if isinstance(event, Counted) or state is None or state.text.startswith("not "):
+            return None  # a condition that must not hold in that time, or one step without it
         return Reading((f"require eventually within {duration.text} {state.at(ATOM)}",))
 
     def within_reach(self, duration: Duration, event: Event) -> _Found:
@@ -146,12 +170,13 @@ class Rules(Conditions):
 
     def reach_without(self, event: Event, avoided: State) -> _Found:
         state = as_state(event)
-        if state is None or state.level > ATOM:
+        if state is None or not _are_simple(state, avoided) or _is_negative(state):
             return None
         return Reading((f"reach {state.text}", f"avoid {avoided.text}"))
 
     def only_when(self, state: State, event: Event) -> _Found:
         condition = as_state(event)
+        condition = condition and _at(state, condition)
         return None if condition is None else Reading((f"keep {state.at(OR)} implies {condition.at(OR)}",))
 
     def only_after(self, state: State, event: Event) -> _Found:
@@ -173,6 +198,9 @@ class Rules(Conditions):
     def when(self) -> When:
         return "when"
 
+    def if_(self) -> When:
+        return "if"
+
     def while_(self) -> When:
         return "while"
 
@@ -190,6 +218,8 @@ class Rules(Conditions):
 
     def last(self, answers: list[Asked], when: When, event: Event) -> _Found:
         state, answer = as_state(event), answers[0].answer
+        if state is None or not _are_simple(state, answer.state):
+            return None
         if answer.kind == "always" and answer.is_negative and when != "after" and not answers[1:]:
             return _conditional(when, event, [Asked(replace(answer, kind="now"))])
         is_plain = answer.kind == "now" and not answer.keyword and not answer.state.text.startswith("not ")
@@ -211,6 +241,9 @@ class Rules(Conditions):
         if condition is None or len(answers) > 1:
             return None
         answer = answers[0].answer
+        condition = _at(answer.state.negated() if answer.is_negative else answer.state, condition)
+        if not _are_simple(condition, answer.state):
+            return None
         if answer.kind == "always" and answer.is_negative:
             return Reading((f"keep {answer.state.negated().at(OR)} implies {condition.at(OR)}",))
         if answer.kind == "now" and answer.keyword == "keep":
@@ -226,10 +259,12 @@ class Rules(Conditions):
     def now(self, state: State) -> Asked:
         return Asked(Answer("now", state))
 
-    def within(self, state: State, duration: Duration) -> Asked:
+    def within(self, state: State, duration: Duration) -> Asked | None:
+        if _is_negative(state):
+            return None  # it may have to hold at one step, or at all of them
         return Asked(Answer("within", state, duration.text))
 
-    def within_first(self, duration: Duration, state: State) -> Asked:
+    def within_first(self, duration: Duration, state: State) -> Asked | None:
         return self.within(state, duration)
 
     def reach_later(self, state: State) -> Asked:
@@ -246,11 +281,15 @@ class Rules(Conditions):
 
     def lasting_exactly(self, state: State, duration: Duration) -> Asked:
         over = f"weak_next after {duration.text} {state.negated().at(ATOM)}"
-        return Asked(Answer("now", State(f"(always for {duration.text} {state.at(ATOM)}) and {over}", 1)), is_formula=True)
+        return Asked(
+            Answer("now", State(f"(always for {duration.text} {state.at(ATOM)}) and {over}", 1)), is_formula=True
+        )
 
     def lasting_then(self, state: State, duration: Duration, following: State) -> Asked:
         over = f"weak_next after {duration.text} {following.at(ATOM)}"
-        return Asked(Answer("now", State(f"(always for {duration.text} {state.at(ATOM)}) and {over}", 1)), is_formula=True)
+        return Asked(
+            Answer("now", State(f"(always for {duration.text} {state.at(ATOM)}) and {over}", 1)), is_formula=True
+        )
 
     def delayed(self, state: State, duration: Duration) -> Asked | None:
         # A monitor remembers each step with the condition until the answer is due.
@@ -289,7 +328,7 @@ class Rules(Conditions):
 
 
 def _goal(event: Event) -> State | None:
-    """Return a goal: `hidden for 4 steps` is reached at the first of them, so that what comes before it is not counted."""
+    """Return a goal: `hidden for 4 steps` begins at the first of them, behind the goal before."""
     if not isinstance(event, Held) or not event.duration.is_steps or event.sign not in ("", ">="):
         return as_state(event)
     number, held = event.duration.number, event.state.at(ATOM)
@@ -297,6 +336,21 @@ def _goal(event: Event) -> State | None:
         return None
     last = int(number) - 1
     return State(f"(always for {number} steps {held}) and next after {last} step{'s' * (last > 1)} {held}", AND)
+
+
+def _at(event: State, condition: State) -> State:
+    """Return a condition at the steps of an event: `since the last event` is since the one before."""
+    is_own = condition.text.startswith(f"(not {event.at(ATOM)} since ")
+    return State(f"previously {condition.text}") if is_own else condition
+
+
+def _is_negative(state: State) -> bool:
+    return state.text.startswith("not ") or " is not " in state.text or " != " in state.text
+
+
+def _are_simple(*states: State) -> bool:
+    """Whether no condition is made of several: a word between them may belong to the nearest alone."""
+    return all(state.level == ATOM and not state.text.startswith("not (") for state in states)
 
 
 def _limited(counted: Counted, sign: str) -> Reading | None:
@@ -358,6 +412,8 @@ def _conditional(when: When, event: Event, answers: list[Asked]) -> _Found:
 def _answer_readings(when: When, event: Event, state: State, asked: Asked) -> list[Reading]:
     answer = asked.answer
     if asked.is_formula:
+        if when == "if" and "until " in answer.state.text:
+            return []  # the rule may end there, or what it asks for
         return [Reading((f"keep {state.at(OR)} implies {answer.state.at(OR)}",), asked.condition)]
     if when in _LASTING and answer.keyword == "reach":
         return []
@@ -375,12 +431,9 @@ def _two_readings(event: State, answer: Answer) -> list[Reading]:
     if answer.kind not in ("now", "always"):
         return []
     a, b = event.at(OR), answer.state
-    if answer.is_negative:
-        each = f"avoid {joined([event, b.negated()], 'and').text}"
-    else:
-        each = f"keep {a} implies {b.at(OR)}"
+    both = joined([event, b.negated()], "and").text
+    each = f"avoid {both}" if answer.is_negative else f"keep {a} implies {b.at(OR)}"
     return [
         Reading((each,), f"for each step with `{event.text}`"),
         Reading((f"keep {a} implies always {b.at(ATOM)}",), "if it holds from then on"),
     ]
-

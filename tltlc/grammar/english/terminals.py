@@ -10,7 +10,7 @@ from tltlc.grammar.english.phrases import DROPPED
 from tltlc.grammar.keywords import UNITS_ELSEWHERE
 from tltlc.grammar.mistakes.declared_names import DeclaredName
 from tltlc.grammar.mistakes.sentences.kinds import call_end
-from tltlc.grammar.mistakes.sentences.words import NUMBER_WORDS, Words
+from tltlc.grammar.mistakes.sentences.words import Words
 
 _SIGNS: Final = {
     "LESS": "SIGN", "AT_MOST": "SIGN", "MORE": "SIGN", "AT_LEAST": "SIGN", "EQUALS": "_EQUALS", "UNEQUAL": "_UNEQUAL",

@@ -45,6 +45,8 @@ def _own(words: Words, at: int) -> tuple[int, list[Word]]:
     text = words[at].text
     if text in ("count", "times") and text not in words.names.names and (counted := _counted(words, at)):
         return counted
+    if text == "last" and words.word(at - 1) == "since":
+        return at + 1, [words[at]]
     is_call = at + 1 < len(words) and words[at + 1].text == "("
     stop = call_end(words, at)
     inner = words[at + 2 : stop - 1] if is_call else words[at + 1 : at + 2]

@@ -57,6 +57,43 @@ def sentence_help(
 ) -> Diagnostic:
     """Return the error for a clause with the fix that its English sentence suggests, if it has one reading.
 
+    A sentence with several readings gets them in the help, and no fix. ``is_explained`` says that the error is
+    about a mistake in a clause of the language.
+    """
+    known = _by_patterns(failure, diagnostic, is_explained=is_explained, read_again=read_again)
+    if failure.start != "clause" or failure.tokens[-1].type != END or len(failure.tokens) > _LONGEST:
+        return known
+    if not (failure.tokens[0].text in _KEYWORDS or is_own_line(failure)):
+        return known
+    if known.code == "TLT0110" and not known.fixes:
+        return known  # the help says what to declare
+    if (known.fixes and _is_mended(failure, known.fixes[0])) or _has_readings(failure, known.help or ""):
+        return known
+    words = _words(failure)
+    if not words or words.word(0) == "require" or (is_imperative(words) and words.word(0) not in _KEYWORDS):
+        return known
+    found = sentence(words)
+    if not found.readings and not found.limit:
+        found = sentence(with_names(words))
+    if found.readings and " ".join(found.readings[0].clauses) != words.text:
+        return _with_readings(failure, known, found.readings)
+    return replace(known, help=found.limit, fixes=()) if found.limit and not found.readings else known
+
+
+def _has_readings(failure: ParseFailure, help_: str) -> bool:
+    """Whether a help names two forms in the words of the file."""
+    names = declared_names(failure.source).names
+    quoted = [
+        {token.text for token in tokenize(text).tokens if token.type == "NAME"} for text in help_.split("`")[1::2]
+    ]
+    return sum(bool(used) and used <= names.keys() for used in quoted) > 1
+
+
+def _by_patterns(
+    failure: ParseFailure, diagnostic: Diagnostic, *, is_explained: bool, read_again: ReadAgain | None
+) -> Diagnostic:
+    """Return the error for a clause with the fix that its English sentence suggests, if it has one reading.
+
     The error stays as it is if its fix leaves no error, or if the sentence is unclear. ``is_explained``
     says that the error is about a mistake in a clause of the language: then its help stays, too.
     """
@@ -78,14 +115,6 @@ def sentence_help(
     words = _words(failure)
     if words.word(0) == "require" or not (failure.tokens[0].text in _KEYWORDS or is_own_line(failure)):
         return diagnostic
-    if not is_imperative(words) or words.word(0) in _KEYWORDS:
-        found = sentence(words)
-        if not found.readings and not found.limit:
-            found = sentence(with_names(words))
-        if found.readings and " ".join(found.readings[0].clauses) != words.text:
-            return _with_readings(failure, diagnostic, found.readings)
-        if found.limit and not found.readings:
-            return replace(diagnostic, help=found.limit, fixes=())
     if not words.find(FILLERS):
         is_spelt = (with_names(words).text != words.text or _compares_bools(words)) and _read(words) is not None
         if diagnostic.fixes and _is_mended(failure, diagnostic.fixes[0]) and not is_spelt:
@@ -137,9 +166,7 @@ def _with_readings(failure: ParseFailure, diagnostic: Diagnostic, found: tuple[R
         return diagnostic
     texts = [" and ".join(f"`{clause}`" for clause in reading.clauses) for reading in valid]
     if len(valid) > 1:
-        described = [
-            f"{text} {reading.condition}".rstrip() for text, reading in zip(texts, valid, strict=True)
-        ]
+        described = [f"{text} {reading.condition}".rstrip() for text, reading in zip(texts, valid, strict=True)]
         return replace(diagnostic, help=f"write {', or '.join(described)}", fixes=())
     span = span_of(failure.tokens[:-1])
     indent = failure.source.text[: span.start].rpartition("\n")[2]

@@ -55,7 +55,7 @@ class State:
 
     def negated(self) -> State:
         """Return the opposite condition."""
-        return State(self.opposite or f"not {self.at(ATOM)}", ATOM, self.text if self.level == ATOM else "")
+        return State(self.opposite or f"not {self.at(ATOM)}", ATOM, self.at(ATOM))
 
 
 def joined(states: list[State], operator: str) -> State:

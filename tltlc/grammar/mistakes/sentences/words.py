@@ -92,9 +92,7 @@ class Words(Sequence[Word]):
     def lines(self) -> list[Words]:
         """Return the words of each line of the text."""
         starts = [
-            at
-            for at, word in enumerate(self)
-            if at == 0 or "\n" in self._source.text[self[at - 1].end : word.start]
+            at for at, word in enumerate(self) if at == 0 or "\n" in self._source.text[self[at - 1].end : word.start]
         ]
         return [self[start:stop] for start, stop in pairwise([*starts, len(self)])]
 

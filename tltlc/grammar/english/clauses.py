@@ -1,0 +1,53 @@
+"""Suggest how to write a clause whose words the language does not know, although it can be parsed."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from tltlc.core.record import replace
+from tltlc.core.source import SourceFile, Span
+from tltlc.diagnostics.diagnostic import Diagnostic, replacement_fix
+from tltlc.grammar.english.readings import sentence
+from tltlc.grammar.lexer import END, tokenize
+from tltlc.grammar.mistakes.declared_names import declared_names
+from tltlc.grammar.mistakes.sentences.calls import with_own_calls
+from tltlc.grammar.mistakes.sentences.validity import is_valid
+from tltlc.grammar.mistakes.sentences.vocabulary import ENGLISH
+from tltlc.grammar.mistakes.sentences.words import words_of
+
+_CODES: Final = ("TLT0110", "TLT0201", "TLT0301", "TLT0302")
+"""The errors that words of other languages cause: `mode == chase`, `prev(mode)`, `a` compared with a bool."""
+_LONGEST: Final = 60
+_BRACKETS: Final = str.maketrans("", "", "()")
+
+
+def with_whole_clause(diagnostic: Diagnostic, source: SourceFile, span: Span) -> Diagnostic:
+    """Return the error in a clause with a fix for the whole clause, if its own fix would leave another error."""
+    label = diagnostic.labels[0] if diagnostic.labels else None
+    if diagnostic.code not in _CODES or label is None or label.source != source or len(diagnostic.labels) > 1:
+        return diagnostic
+    if diagnostic.code == "TLT0110" and not diagnostic.fixes:
+        return diagnostic  # the help says what to declare
+    tokens = [token for token in tokenize(source.text).tokens if span.start <= token.start and token.end <= span.end]
+    tokens = [token for token in tokens if token.type != END]
+    if not tokens or len(tokens) > _LONGEST or "//" in source.slice(span):
+        return diagnostic
+    words = with_own_calls(words_of(source, declared_names(source), tokens, ENGLISH))
+    readings = sentence(words).readings
+    if len(readings) != 1 or not is_valid(readings[0].clauses):
+        return diagnostic
+    text = " ".join(readings[0].clauses)
+    mended = source.slice(span)
+    for edit in diagnostic.fixes[0].edits[:1] if diagnostic.fixes else ():
+        mended = source.text[span.start : edit.span.start] + edit.text + source.text[edit.span.end : span.end]
+    if _plain(text) in (_plain(mended), _plain(source.slice(span))):
+        return diagnostic
+    quoted = " and ".join(f"`{clause}`" for clause in readings[0].clauses)
+    fix = replacement_fix(source, span, " ".join(readings[0].clauses))
+    return replace(diagnostic, help=f"write {quoted}", fixes=(replace(fix, title=f"Write {quoted}"),))
+
+
+def _plain(text: str) -> str:
+    """Return a clause without blanks and brackets, and with words for the signs of operators."""
+    words = text.replace("&&", " and ").replace("||", " or ").replace("->", " implies ").replace("=>", " implies ")
+    return "".join(words.replace("!=", "≠").replace("!", " not ").translate(_BRACKETS).split())
