@@ -9,20 +9,23 @@ from tltlc.grammar.tree import BinaryExpr, Quantified, Unary
 from tltlc.tools.lint.file_view import ScopedExpression, SpecView, without_brackets
 
 
-def goals(spec: SpecView) -> Iterator[ScopedExpression]:
+def goals(spec: SpecView, *, answers: bool = True) -> Iterator[ScopedExpression]:
     """Yield the goals of a spec: the expressions that must hold at some step.
 
     They are the operands of ``eventually``, each step of a chain ``a then b then c``, and the
     expression of a ``reach`` clause without ``then``. Parts of a negation, and of the condition of an
     implication, do not count. For ``reach a then b``, yield a and b.
+
+    If ``answers`` is false, parts of the result of an implication do not count either, nor of ``b`` in
+    ``within 2 s of a, b``. They are an answer to the condition, and no goal of play.
     """
     for clause, value in spec.clauses("reach", "keep", "require"):
         if clause.kind == "reach":
             for step in walk.operands(value.tree, "then"):
                 yield value.with_tree(step)
-                yield from _goals_inside(value.with_tree(step))
+                yield from _goals_inside(value.with_tree(step), answers=answers)
         else:
-            yield from _goals_inside(value)
+            yield from _goals_inside(value, answers=answers)
 
 
 def conjuncts(goal: ScopedExpression) -> list[ScopedExpression]:
@@ -50,7 +53,7 @@ def consists_of_implications(value: ScopedExpression) -> bool:
     return all(isinstance(tree, BinaryExpr) and tree.op == "implies" for tree in trees)
 
 
-def _goals_inside(value: ScopedExpression) -> Iterator[ScopedExpression]:
+def _goals_inside(value: ScopedExpression, *, answers: bool) -> Iterator[ScopedExpression]:
     """Yield the goals in an expression, outer before inner. Does not recurse."""
     pending = [value]
     while pending:
@@ -64,6 +67,6 @@ def _goals_inside(value: ScopedExpression) -> Iterator[ScopedExpression]:
         elif isinstance(tree, BinaryExpr) and tree.op == "then":
             operands = [part.with_tree(step) for step in walk.operands(tree, "then")]
             yield from operands
-        elif isinstance(tree, BinaryExpr) and tree.op == "implies":
-            operands = operands[1:]
+        elif isinstance(tree, BinaryExpr) and tree.op in ("implies", "within"):
+            operands = operands[1:] if answers else []
         pending += reversed(operands)
