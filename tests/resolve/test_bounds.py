@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.logic.strategies import traces
-from tests.resolve.helpers import codes, formula, only_spec
+from tests.resolve.helpers import codes, formula, only_spec, resolve_text
 from tltlc.diagnostics.diagnostic import TltlError
 from tltlc.logic.oracle import holds
 from tltlc.pipeline import compile_text
@@ -51,6 +51,15 @@ def test_next_after_looks_that_many_steps_ahead(trace: tuple[frozenset[str], ...
 )
 def test_bounds_in_words_and_seconds_equal_bounds_in_brackets(words: str, brackets: str) -> None:
     assert formula(DECLARED + words) == formula(DECLARED + brackets)
+
+
+@pytest.mark.parametrize(("clock", "steps"), [("2 Hz", "3"), ("20 Hz", "30"), ("7 Hz", "11"), ("2 s", "1")])
+def test_a_fraction_of_steps_gets_the_time_and_its_steps(clock: str, steps: str) -> None:
+    before = f"clock {clock} signal a: bool spec s ="
+    (diagnostic,) = resolve_text(f"{before} F[0,1.5] a")[1]
+    assert diagnostic.help is not None and not diagnostic.fixes
+    assert f"`1.5 s`, which is {steps} step" in diagnostic.help
+    assert formula(f"{before} F[0,1.5 s] a") == formula(f"{before} F[0,{steps}] a")
 
 
 @pytest.mark.parametrize("period", [0.05, 0.1, 0.02, 0.15, 1 / 60, 1 / 30])

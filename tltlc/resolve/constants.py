@@ -63,9 +63,8 @@ def samples(value: NumberExpr, env: Env) -> int:
     source = env.scope.source
     if value.unit in (None, "step", "steps"):
         if value.value != value.value // 1 and value.value <= MOST_SAMPLES:
-            whole = f"{value.value // 1 + 1:.0f}" + (f" {value.unit}" if value.unit else "")
-            advice = f"write e.g. `{whole}`"
-            raise problem("TLT0312", "expected a whole number of steps", source, value.span, advice=advice)
+            title, advice = "expected a whole number of steps", _fraction_help(value, env)
+            raise problem("TLT0312", title, source, value.span, advice=advice)
         return _sample_count(value.value, value, env)
     in_si = units.in_si(value.value, value.unit)
     if in_si is None or in_si[1] != units.TYPES["time"]:
@@ -89,6 +88,21 @@ def samples(value: NumberExpr, env: Env) -> int:
         )
     # Subtract a tolerance, so that a rounding error of the division does not add a sample.
     return _sample_count(in_si[0] / period - 1e-9, value, env)
+
+
+def _fraction_help(value: NumberExpr, env: Env) -> str:
+    """Return a help text for a number of steps such as ``1.5``, which is no whole number.
+
+    Without a unit, the author probably means seconds. No rounding is offered, since it changes the meaning.
+    """
+    if value.unit is not None:
+        return "there are no parts of a step: write a whole number of them, or a time, e.g. `2 s`"
+    time = f"{env.scope.source.slice(value.span)} s"
+    advice = "a bound without a unit counts steps; for a time, "
+    if env.context.clock_s is None:
+        return f"{advice}declare how often the game takes a sample, e.g. `clock 20 Hz`, and write `{time}`"
+    count = samples(replace(value, unit="s"), env)
+    return f"{advice}write `{time}`, which is {count} step{'s' * (count != 1)} with this clock"
 
 
 def seconds(value: NumberExpr, example: str, env: Env) -> float:
