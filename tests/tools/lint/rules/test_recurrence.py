@@ -44,7 +44,14 @@ CLAUSES = (
         ("keep (F (a))", ["keep (F"]),
         ("require G F a", ["G F"]),
         ("require b -> [] <> a", ["[] <>"]),
-        ("require F (G a)", ["F (G"]),
+        ("require eventually always a", []),
+        ("require F (G a)", []),
+        ("require b and (F G a)", []),
+        ("require not F G a", ["F G"]),
+        ("require b implies F G a", ["F G"]),
+        ("require F not F a", ["F not F"]),
+        ("keep eventually always a", ["keep eventually", "eventually always"]),
+        ("avoid eventually always a", ["eventually always"]),
         ("reach always a", ["reach always"]),
         ("keep b and eventually a", ["eventually"]),
         ("require always (b and eventually a)", ["eventually"]),
@@ -118,6 +125,31 @@ def test_the_suggestion_is_no_goal_that_a_false_condition_meets(clause: str, goa
 
 
 @pytest.mark.parametrize(
+    "clause",
+    ["keep eventually a", "reach always (a or b)", "require G F a", "avoid always a", "require G not G not (a and b)"],
+)
+def test_the_suggestion_for_the_last_step_is_equivalent_and_not_reported(clause: str) -> None:
+    suggestion = last_step_advice(clause)
+    (original,), (suggested,) = tltlc.compile_text(block(clause)), tltlc.compile_text(block(suggestion))
+    assert suggestion.startswith("require eventually always ") and are_equivalent(original, suggested)
+    assert "TLT0424" not in codes(block(suggestion))
+
+
+@pytest.mark.parametrize("clause", ["reach b then (always a)", "require b implies G F a"])
+def test_a_part_about_the_last_step_can_be_allowed(clause: str) -> None:
+    assert not {"TLT0424", "TLT0427"} & {*codes(block(f"{clause}  {last_step_advice(clause)}"))}
+
+
+def last_step_advice(clause: str) -> str:
+    """Return what the finding on a clause says to write if the last step is meant."""
+    (help_,) = (
+        finding.diagnostic.help for finding in findings_in(block(clause)) if finding.diagnostic.code == "TLT0424"
+    )
+    assert help_ is not None
+    return help_.split("`")[1]
+
+
+@pytest.mark.parametrize(
     ("clause", "advice"),
     [
         ("reach always a", "write `reach a`"),
@@ -165,6 +197,7 @@ def test_the_suggestion_fits_a_spec_or_let_without_clauses() -> None:
 def test_lets_are_checked_if_all_specs_are_finite() -> None:
     text = "signal a: bool let often = G F a spec s = often"
     assert labelled_texts(text, "TLT0424") == ["G F"]
+    assert labelled_texts(text.replace("G F", "F G"), "TLT0424") == []
     assert codes(f"{text} spec t {{ semantics infinite limit 9 steps judge at limit require often }}") == []
     assert codes("signal a: bool let often = G F a") == []
 

@@ -7,13 +7,14 @@ from collections.abc import Iterator
 from tltlc.core.source import Span
 from tltlc.diagnostics.diagnostic import Label
 from tltlc.grammar.tree import BinaryExpr, Expr, LetDecl, Unary
-from tltlc.grammar.walk import operands, parts
+from tltlc.grammar.walk import conjuncts, operands, parts
 from tltlc.tools.lint.file_view import FileView, ScopedExpression, operand_text, without_brackets
 from tltlc.tools.lint.goals import consists_of_implications
 from tltlc.tools.lint.rule import LintRule, RuleFinding
 
 _WORDS = {"F": "it comes again and again", "G": "it lasts from some time on"}
 """What the author usually means by ``G F`` (the key ``F``) and by ``F G`` (the key ``G``)."""
+_ALLOWED = "it is right as it stands: allow it with the comment `// tltlc: allow TLT0424`"
 _DUAL = {"G": "F", "F": "G"}
 _OF_CLAUSES = {"keep": ("G", True), "avoid": ("G", False), "reach": ("F", True)}
 """Maps each kind of clause to its operator, and to whether the operand is the clause's formula.
@@ -26,13 +27,15 @@ def check(view: FileView) -> Iterator[RuleFinding]:
     """Yield a finding for each `G F p` and `F G p` of a spec over finite traces.
 
     A `keep` or `avoid` clause counts as an outer `G`, and a `reach` clause as an outer `F`. Lets
-    are checked only if all specs of the file are over finite traces.
+    are checked only if all specs of the file are over finite traces. `require F G p` is right as it
+    stands: from some step on, p lasts to the end of the trace.
     """
     finite = [spec for spec in view.specs if spec.spec.semantics == "finite"]
     for spec in finite:
         for clause, formula in spec.clauses("reach", "keep", "avoid", "require"):
             is_clause = spec.declaration.block and clause.kind != "avoid"
-            yield from _findings_inside(formula.tree, view, without_brackets(formula.tree) if is_clause else None)
+            whole = without_brackets(formula.tree) if is_clause else None
+            yield from _findings_inside(formula.tree, view, whole, is_required=clause.kind == "require")
             # In a chain of goals only the last step can be a condition on the end of the trace.
             last = operands(formula.tree, "then")[-1] if clause.kind == "reach" else formula.tree
             start = clause.span.start if last is formula.tree else without_brackets(last).span.start
@@ -41,18 +44,30 @@ def check(view: FileView) -> Iterator[RuleFinding]:
     if len(finite) == len(view.specs) > 0:
         for declaration in view.module.declarations:
             if isinstance(declaration, LetDecl):
-                yield from _findings_inside(declaration.body, view, None)
+                yield from _findings_inside(declaration.body, view, None, is_required=True)
 
 
-def _findings_inside(tree: Expr, view: FileView, clause: Expr | None) -> Iterator[RuleFinding]:
+def _findings_inside(tree: Expr, view: FileView, clause: Expr | None, *, is_required: bool) -> Iterator[RuleFinding]:
     """Yield findings about the operand of each unbounded `always` and `eventually` in the expression ``tree``.
 
     If ``tree`` is the expression of a whole clause, then ``clause`` is ``tree`` without brackets, and
-    the advice may be to write another clause. Otherwise ``clause`` is None.
+    the advice may be to write another clause. Otherwise ``clause`` is None. If ``is_required``, then
+    ``tree`` must hold at the first step, so each of its conjuncts that is `F G p` is left out.
     """
+    at_the_end = {id(without_brackets(part)) for part in conjuncts(tree) if is_required and _is_eventually_always(part)}
     for part in parts(tree):
-        if isinstance(part, Unary) and part.op in _DUAL and part.bound is None:
+        if isinstance(part, Unary) and part.op in _DUAL and part.bound is None and id(part) not in at_the_end:
             yield from _findings(part.span.start, part.operand, part.op, True, view, is_clause=part is clause)
+
+
+def _is_eventually_always(tree: Expr) -> bool:
+    """Whether an expression is `F G p`, without bounds."""
+    for op in ("F", "G"):
+        tree = without_brackets(tree)
+        if not isinstance(tree, Unary) or tree.op != op or tree.bound is not None:
+            return False
+        tree = tree.operand
+    return True
 
 
 def _findings(
@@ -81,8 +96,10 @@ def _findings(
             if op == _DUAL[outer]:
                 awaited = ScopedExpression(part.operand, view.env)
                 word = view.source.slice(part.op_span)
-                once = _once(awaited, sign, outer, word, is_whole=part is whole, is_clause=is_clause)
-                yield _finding(Span(begin, part.op_span.end), op, awaited, sign, once)
+                as_clause = is_clause and (part is whole or outer == "G")
+                last = f"write `require eventually always {_operand(awaited, sign)}`"
+                once = _once(awaited, sign, outer, word, is_whole=part is whole, as_clause=as_clause)
+                yield _finding(Span(begin, part.op_span.end), op, awaited, sign, last if as_clause else _ALLOWED, once)
         elif (
             isinstance(part, BinaryExpr) and part.op in ("and", "or") and (part.op == "and") == ((outer == "G") == sign)
         ):
@@ -115,20 +132,19 @@ def _either_until(part: BinaryExpr, view: FileView, goal: str, *, is_clause: boo
     )
 
 
-def _once(awaited: ScopedExpression, sign: bool, outer: str, word: str, *, is_whole: bool, is_clause: bool) -> str:
+def _once(awaited: ScopedExpression, sign: bool, outer: str, word: str, *, is_whole: bool, as_clause: bool) -> str:
     """Return advice on what to write in place of `G F awaited` or `F G awaited` if once is enough.
 
     If ``sign`` is false, the negation of ``awaited`` is to hold. ``outer`` is the outer operator, `F`
     or `G`, and ``word`` the inner operator as the source spells it. ``is_whole`` says whether the
-    outer operator contains nothing else, and ``is_clause`` whether the outer operator and its
-    operand are a whole clause.
+    outer operator contains nothing else, and ``as_clause`` whether the advice may be to write a clause.
     """
-    if is_clause and (is_whole or outer == "G"):
+    if as_clause:
         return f"write `reach {_goal(awaited, sign)}`"
     if outer == "F":
         return f"leave out this `{word}`"
     if is_whole:
-        return f"write `eventually {operand_text(awaited) if sign else _goal(awaited, sign)}`"
+        return f"write `eventually {_operand(awaited, sign)}`"
     return "take it out of the `always`"
 
 
@@ -136,16 +152,22 @@ def _goal(awaited: ScopedExpression, sign: bool) -> str:
     return awaited.text if sign else f"not {operand_text(awaited)}"
 
 
-def _finding(place: Span, op: str, awaited: ScopedExpression, sign: bool, once: str) -> RuleFinding:
+def _operand(awaited: ScopedExpression, sign: bool) -> str:
+    return operand_text(awaited) if sign else _goal(awaited, sign)
+
+
+def _finding(place: Span, op: str, awaited: ScopedExpression, sign: bool, last: str, once: str) -> RuleFinding:
     """Return the finding that an expression such as `G F awaited` constrains only the last step.
 
     ``op`` is the inner operator, `F` or `G`, and ``place`` is the span of both operators. ``sign`` is
-    false if the negation of ``awaited`` is required. ``once`` is the advice from :func:`_once`.
+    false if the negation of ``awaited`` is required. ``last`` is the advice if the last step is meant,
+    and ``once`` that from :func:`_once`.
     """
     label = Label(
         awaited.source, place, f"on a trace that ends, this only means `{_goal(awaited, sign)}` at the last step"
     )
-    help_ = f"if play has no end and {_WORDS[op]}, write `semantics infinite`: then no trace that ends violates it"
+    help_ = f"if the last step is meant, {last}"
+    help_ += f"; if play has no end and {_WORDS[op]}, write `semantics infinite`: then no trace that ends violates it"
     if not (sign and consists_of_implications(awaited)):
         help_ += f"; if once is enough, {once}"
     return RuleFinding("this is only about the last step", (label,), help_)
