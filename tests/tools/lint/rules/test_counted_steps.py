@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 import tltlc
-from tests.tools.lint.helpers import SIGNALS, block, findings_in, labelled_texts_in_block
+from tests.tools.lint.helpers import SIGNALS, block, codes, findings_in, labelled_texts_in_block
 from tltlc.automaton.compare import are_equivalent
 
 
@@ -15,7 +15,10 @@ from tltlc.automaton.compare import are_equivalent
         ("require X X a", ["X X"]),
         ("require X F a", []),
         ("require X a", []),
-        ("require next after 2 steps a", ["next after 2 steps"]),
+        ("require next after 2 steps a", []),
+        ("require always for 4 steps next after 2 steps a", []),
+        ("require X next after 2 steps a", []),
+        ("require X X next after 2 steps a", ["X X"]),
         ("require next after 1 step a", []),
         ("require next after 2 s a", []),
         ("require N (N a)", ["N (N"]),
@@ -40,17 +43,30 @@ def test_repeated_nexts_are_reported(clause: str, expected: list[str]) -> None:
         "require weak_next weak_next weak_next a",
         "require X X (a or b)",
         "require N (N (N (N (N (N (N a))))))",
-        "require next after 5 steps (a until b)",
-        "require weak_next after 2 steps a",
+        "require X X X X X (a until b)",
+        "require N weak_next a",
         "require X X all x in (k, l): near(x)",
     ],
 )
-def test_the_suggested_time_in_seconds_is_equivalent(clause: str, clock: str) -> None:
+def test_the_suggested_steps_and_time_are_equivalent(clause: str, clock: str) -> None:
     before = f"clock {clock}\nentity k, l\nsignal near(e): bool\n{SIGNALS}"
     text = block(clause, before=before)
+    help_ = advice(text)
+    (original,) = tltlc.compile_text(text)
+    for suggestion in help_.split("`")[1:4:2]:
+        suggested = block(f"require {suggestion}", before=before)
+        assert are_equivalent(original, tltlc.compile_text(suggested)[0])
+        assert "TLT0418" not in codes(suggested)
+
+
+@pytest.mark.parametrize("clause", ["keep a implies X X b", "keep a implies N N b"])
+def test_on_a_clock_that_varies_the_suggested_time_compiles(clause: str) -> None:
+    before = f"clock varies\n{SIGNALS}"
+    suggestion = advice(block(clause, before=before)).split("`")[1]
+    assert "TLT0418" not in codes(block(f"keep a implies {suggestion}", before=before))
+
+
+def advice(text: str) -> str:
+    """Return the help of the only finding of this rule in a text."""
     (help_,) = (finding.diagnostic.help or "" for finding in findings_in(text) if finding.diagnostic.code == "TLT0418")
-    suggestion = help_.split("`")[1]
-    original, suggested = (
-        tltlc.compile_text(source)[0] for source in (text, block(f"require {suggestion}", before=before))
-    )
-    assert are_equivalent(original, suggested)
+    return help_

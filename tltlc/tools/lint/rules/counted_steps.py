@@ -16,9 +16,9 @@ from tltlc.tools.lint.rule import LintRule, RuleFinding
 
 
 def check(view: FileView) -> Iterator[RuleFinding]:
-    """Yield a finding for each chain of `next` that takes two or more steps, in specs and lets.
+    """Yield a finding for each chain of two or more `next`, in specs and lets.
 
-    A `next after N steps` counts as N steps.
+    A `next after 3 steps` is no part of a chain: who writes the number of steps means it.
     """
     trees = [formula.tree for spec in view.specs for formula in spec.formulas()]
     trees += [declaration.body for declaration in view.module.declarations if isinstance(declaration, LetDecl)]
@@ -31,42 +31,39 @@ def check(view: FileView) -> Iterator[RuleFinding]:
                     yield _finding(view, part, steps, awaited)
 
 
-def _chain(first: Unary, inside: set[int]) -> tuple[float, Expr]:
-    """Return how many steps a chain of `next` takes, and the operand of the last `next`.
+def _chain(first: Unary, inside: set[int]) -> tuple[int, Expr]:
+    """Return how many `next` a chain has, and the operand of the last one: 2 and `a` for `next next a`.
 
-    For `next next after 3 steps a`, these are 4 and `a`. A `next` with a bound in seconds does not
-    belong to the chain. The ids of the nodes in the chain are added to ``inside``.
+    The ids of the nodes in the chain are added to ``inside``.
     """
-    steps, tree = 0.0, without_brackets(first)
-    while isinstance(tree, Unary) and tree.op == first.op and _steps(tree):
+    steps, tree = 0, without_brackets(first)
+    while isinstance(tree, Unary) and tree.op == first.op and tree.bound is None:
         inside.add(id(tree))
-        steps += _steps(tree)
+        steps += 1
         tree = without_brackets(tree.operand)
     return steps, tree
 
 
-def _steps(tree: Unary) -> float:
-    """Return how many steps a `next` takes; 0 if its bound is in seconds."""
-    if tree.bound is None:
-        return 1
-    return tree.bound.high.value if tree.bound.high.unit in (None, "step", "steps") else 0
-
-
-def _finding(view: FileView, chain: Unary, steps: float, awaited: Expr) -> RuleFinding:
+def _finding(view: FileView, chain: Unary, steps: int, awaited: Expr) -> RuleFinding:
     text = operand_text(ScopedExpression(awaited, view.env))
-    help_ = f"you seldom mean exactly {steps:g} steps later: declare a `clock`, and give the time in seconds"
-    if view.env.context.clock_s:
-        time = _seconds(steps, view.env.context.clock_s, view.env)
-        if chain.op == "N":
-            help_ = f"give the time in seconds: `weak_next after {time} s {text}`"
-        else:
-            help_ = f"give the time in seconds: `next after {time} s {text}`"
+    word = "weak_next" if chain.op == "N" else "next"
+    context = view.env.context
+    help_ = f"if exactly {steps} steps are meant, write `{word} after {steps} steps {text}`; if a time is meant, "
+    if context.clock_varies:
+        # `next after` needs a fixed clock.
+        help_ = f"if a time is meant, give it in seconds, e.g. `eventually within 0.2 s {text}`"
+    elif context.clock_s:
+        time = _seconds(steps, context.clock_s, view.env)
+        help_ += f"give it in seconds: `{word} after {time} s {text}`"
+        if chain.op == "X":
             help_ += f", or `eventually within {time} s {text}` if it may come earlier"
-    label = Label(view.source, Span(chain.span.start, awaited.span.start), f"exactly {steps:g} steps from now")
+    else:
+        help_ += "declare a `clock`, and give it in seconds"
+    label = Label(view.source, Span(chain.span.start, awaited.span.start), f"exactly {steps} steps from now")
     return RuleFinding("this counts steps, however long they take", (label,), help_)
 
 
-def _seconds(steps: float, period: float, env: Env) -> str:
+def _seconds(steps: int, period: float, env: Env) -> str:
     """Return a short decimal number of seconds that the compiler turns into exactly this many steps.
 
     ``period`` is the length of a step in seconds. The compiler rounds times up to whole steps, so
