@@ -40,10 +40,10 @@ from tltlc.resolve.declared_values import signal
 from tltlc.resolve.enums import is_value
 from tltlc.resolve.equality import EQUALITIES, equality
 from tltlc.resolve.groups import entities
-from tltlc.resolve.kinds import kind_of, lookup, not_a_formula_error
+from tltlc.resolve.kinds import check_let, kind_of, lookup, not_a_formula_error
 from tltlc.resolve.predicates import argument_value, predicate
 from tltlc.resolve.problem import ResolutionError
-from tltlc.resolve.scope import Binding
+from tltlc.resolve.scope import FUNCTIONS, Binding
 from tltlc.resolve.trampoline import FormulaGenerator, run_to_result
 from tltlc.resolve.unfolding import bounded_parts, unfold
 from tltlc.resolve.units import value_type
@@ -176,6 +176,8 @@ def _resolve_name(expr: NameExpr | CallExpr, env: Env) -> FormulaGenerator:
         if isinstance(local, Quantity) and local.is_bool:
             return _bool_atom(local, "", expr, env)
         raise not_a_formula_error(expr, env)
+    if isinstance(expr, CallExpr) and expr.name in FUNCTIONS and expr.name not in env.scope.names:
+        raise not_a_formula_error(expr, env)
     binding = lookup(expr, env, ("predicate", "let", "signal"), "predicate")
     if binding.kind == "predicate":
         use = predicate(expr, binding, env, env.context.levels)
@@ -266,6 +268,7 @@ def _expand_let(declaration: LetDecl, binding: Binding, inside: Env, span: Span,
         _count_expansion(span, user)
         context.expanding[key] = declaration.name
         try:
+            check_let(declaration, inside)
             body = yield _formula(declaration.body, inside)
         finally:
             del context.expanding[key]

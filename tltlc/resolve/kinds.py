@@ -8,7 +8,7 @@ from tltlc.diagnostics.diagnostic import Fix, replacement_fix
 from tltlc.grammar import past_words, tree
 from tltlc.grammar.keywords import CONDITIONS
 from tltlc.grammar.mistakes.insertion import declaration_edit
-from tltlc.grammar.tree import CallExpr, Expr, GroupDecl, GroupExpr, NameExpr, SignalDecl
+from tltlc.grammar.tree import CallExpr, Expr, GroupDecl, GroupExpr, LetDecl, NameExpr, SignalDecl
 from tltlc.grammar.walk import parts
 from tltlc.resolve import units
 from tltlc.resolve.enums import enum_as_formula_error, enum_of
@@ -296,6 +296,22 @@ def not_a_formula_error(expr: Expr, env: Env) -> ResolutionError:
         advice = entity_help(env.scope.source.slice(expr.span), env, number=False)
     kind = kind_in_words(expr, env)
     return problem("TLT0301", f"expected a formula, found {kind}", env.scope.source, expr.span, advice=advice)
+
+
+def check_let(declaration: LetDecl, inside: Env) -> None:
+    """Raise ResolutionError (TLT0301) if the body of a ``let`` is a number; ``inside`` is the body's environment."""
+    body = declaration.body
+    if kind_of(body, inside) != "number" or enum_of(body, inside) is not None:
+        return
+    if _is_literal(body):
+        advice = "a `let` holds a formula; a fixed number with a name is a `param`, e.g. `param most: length = 3 m`"
+    else:
+        advice = (
+            "a `let` holds a formula: compare the number here, write it in the clauses themselves, or let the game "
+            "supply it as a signal"
+        )
+    title = "expected a formula, found a number"
+    raise problem("TLT0301", title, inside.scope.source, body.span, advice=advice)
 
 
 def _comparison_help(expr: Expr, env: Env) -> str:

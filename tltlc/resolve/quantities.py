@@ -17,7 +17,7 @@ from tltlc.resolve.arguments import match
 from tltlc.resolve.declared_values import param, signal, signal_value
 from tltlc.resolve.dimensions import mismatch, same_dimension
 from tltlc.resolve.enums import enum_as_number_error, enum_distance
-from tltlc.resolve.kinds import entity_help, kind_in_words, kind_of, lookup
+from tltlc.resolve.kinds import check_let, entity_help, kind_in_words, kind_of, lookup
 from tltlc.resolve.problem import ResolutionError, problem
 from tltlc.resolve.ranges import hull
 from tltlc.resolve.recall import check_closed, saturate
@@ -173,6 +173,9 @@ def _resolve_name(expr: NameExpr | CallExpr, env: Env, depth: int) -> Quantity:
         from tltlc.resolve.predicates import predicate
 
         return predicate(expr, binding, env, depth).value
+    if isinstance(binding.declaration, tree.LetDecl):
+        # If the body is a number, the mistake is in the definition.
+        check_let(binding.declaration, env.inside(binding.scope, {}))
     raise _not_a_number_error(expr, env)
 
 
