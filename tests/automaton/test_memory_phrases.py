@@ -177,6 +177,15 @@ SENTENCES = [
         "keep previously (alarm and seen) implies hidden",
         "Whenever (alarm and seen) at the step before, have hidden at that step.",
     ),
+    (
+        "keep previously (mode(g2) is alert) implies hidden",
+        "Whenever mode(g2) was alert at the step before, have hidden at that step.",
+    ),
+    ("avoid previously (mode(g2) is alert)", "Keep mode(g2) was not alert at the step before throughout."),
+    (
+        "keep previously (mode(g2) is not alert) implies hidden",
+        "Whenever mode(g2) was not alert at the step before, have hidden at that step.",
+    ),
     ("keep begins (alarm and seen) implies hidden", "Whenever (alarm and seen) begins, have hidden at that step."),
     ("keep historically (alarm implies hidden)", "Keep (alarm implies hidden) all along throughout."),
     ("keep near(door) implies times(has(key)) >= 1", "Whenever near(door), have had has(key) at least once."),

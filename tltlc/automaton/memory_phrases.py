@@ -28,7 +28,7 @@ from tltlc.automaton.remembered_formulas import (
     with_rules,
 )
 from tltlc.automaton.timer_phrases import ALWAYS, FROM_START, TIMERS
-from tltlc.automaton.value_phrases import VALUES, Phrase, count_text, time_text, value_phrase
+from tltlc.automaton.value_phrases import VALUES, Phrase, count_text, time_text, value_phrase, was_phrase
 from tltlc.core.names import ComparisonName, SpokenName
 from tltlc.expression.tree import Before, SignalValue
 from tltlc.logic.formula import TRUE, Formula, always, and_, atom, eventually, implies, not_, or_, rebuild
@@ -308,6 +308,8 @@ class Speaker:
         """Return the phrase of ``once p``, ``historically p``, ``p since q`` or ``previously p``."""
         if item.name in self._before:
             operand = self._before[item.name]
+            if (was := was_phrase(operand, self._atoms)) is not None:
+                return was
             occurred = self._occurred(operand)
             when = "at the step before" if occurred is None else "at an earlier step"
             return Phrase(SpokenName(f"{self.object_text(operand if occurred is None else occurred)} {when}"))

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Final, NamedTuple
 
-from tltlc.core.names import ComparisonName, split_name
-from tltlc.resolve.spec import Register
+from tltlc.core.names import ComparisonName, SpokenName, split_name
+from tltlc.logic.formula import Formula
+from tltlc.resolve.spec import Atom, Register
 
 _COMPARED: Final = {
     ">": "more than",
@@ -48,6 +50,19 @@ def value_phrase(name: str, register: Register) -> Phrase | None:
         return None
     comparison = ComparisonName(left, operator, right)
     return Phrase(comparison, comparison.opposite)
+
+
+def was_phrase(state: Formula, atoms: Mapping[str, Atom]) -> Phrase | None:
+    """Return "mode was alert at the step before" for a test of an enum or its negation; None for other formulas.
+
+    ``atoms`` are the atoms of the automaton, by name.
+    """
+    test = state.args[0] if state.op == "not" else state
+    name = atoms[test.name].base if test.name in atoms else ""
+    if not isinstance(name, ComparisonName) or name.operator != "is":
+        return None
+    was, was_not = (SpokenName(f"{name.left} {verb} {name.right} at the step before") for verb in ("was", "was not"))
+    return Phrase(was, was_not) if test is state else Phrase(was_not, was)
 
 
 def value_words(register: Register) -> str:
