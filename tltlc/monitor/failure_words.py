@@ -8,6 +8,7 @@ from tltlc.automaton.fspa import Fspa
 from tltlc.automaton.memory_phrases import spoken
 from tltlc.automaton.text import label_text
 from tltlc.logic import formula as f
+from tltlc.logic.text.phrases import with_opposites
 from tltlc.logic.text.printer import words_text
 from tltlc.monitor.failure import Cause, Failure
 
@@ -45,9 +46,13 @@ def cause_words(fspa: Fspa, cause: Cause) -> str:
     return f"{_listed(true, 'and')} without {_listed(false, 'or')}"
 
 
-def atom_words(fspa: Fspa, atom: int) -> str:
-    """Return an atom in words: its name, or for one that remembers the trace, "answers later than 5 s after alarm"."""
-    return words_text(spoken(f.atom(fspa.atoms[atom].name), fspa))
+def atom_words(fspa: Fspa, atom: int, *, holds: bool = True) -> str:
+    """Return an atom in words: its name, or for one that remembers the trace, "answers later than 5 s after alarm".
+
+    Unless it ``holds``, return its negation.
+    """
+    literal = f.atom(fspa.atoms[atom].name)
+    return words_text(with_opposites(spoken(literal if holds else f.not_(literal), fspa)))
 
 
 def unmet_words(fspa: Fspa, failed: Failure) -> str:

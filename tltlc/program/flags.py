@@ -7,7 +7,7 @@ are taken for flags are -1 or 1 before a sample, then they are after it, too.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from typing import Final, Literal, Union
 
 from tltlc.automaton.fspa import Fspa
@@ -43,11 +43,12 @@ class Flags:
     """The atoms and registers of an automaton that are -1 or 1 at every sample, by the keys of their values.
 
     A register is among them as it is before the sample, too. ``order`` is the order in which a monitor
-    computes atoms and registers.
+    computes atoms and registers. The atoms whose names are in ``given`` are taken for flags, too, such as those of
+    enums, which are -1 or 1 if the game supplies whole numbers.
     """
 
-    def __init__(self, fspa: Fspa, order: Sequence[Computation]) -> None:
-        self._fspa, self._order = fspa, order
+    def __init__(self, fspa: Fspa, order: Sequence[Computation], given: Collection[str] = ()) -> None:
+        self._fspa, self._order, self._given = fspa, order, given
         taken = {register.name for register in fspa.registers if register.initial in _FLAG}
         while True:
             self._values = _Valuation(_known(fspa, taken))
@@ -62,7 +63,7 @@ class Flags:
         for step in self._order:
             if step.kind == "atom":
                 atom = self._fspa.atoms[step.index]
-                if self._values.of(atom.expression) in _WITHIN:
+                if atom.name in self._given or self._values.of(atom.expression) in _WITHIN:
                     self._values.known[AtomValue(atom.name)] = _FLAG
             else:
                 register = self._fspa.registers[step.index]

@@ -60,7 +60,49 @@ def test_a_value_of_the_step_before_is_told_in_words(tltlc) -> None:  # type: ig
     Path("boss.tltl").write_text("signal health in [0, 100]\nspec boss { keep health >= previous(health) }\n")
     Path("run.csv").write_text("health\n50\n40\n")
     judged = tltlc("monitor", "boss.tltl", "run.csv")
-    assert judged.err.splitlines()[1] == "at step 2: the previous health is 50, health is 40"
+    assert judged.err.splitlines()[1] == "at step 2: health is 40, the previous health is 50"
+
+
+MODES = """\
+signal mode: (normal, alert, emergency)
+signal tempo: int in [0, 9]
+signal pulse: int in [0, 9]
+"""
+
+
+@pytest.mark.parametrize(
+    ("clause", "values"),
+    [
+        ("keep mode is emergency", "mode is normal"),
+        ("avoid mode is normal", "mode is normal"),
+        ("keep mode is alert or mode is emergency", "mode is normal"),
+        (
+            "avoid mode is not emergency and previously (mode is emergency)",
+            "mode is normal, mode was emergency at the step before",
+        ),
+        (
+            "keep mode is emergency or previously (mode is not emergency)",
+            "mode is normal, mode was emergency at the step before",
+        ),
+        ("keep historically (mode is emergency)", "not (mode is emergency all along)"),
+        ("avoid once (tempo > 4)", "tempo > 4 now or before"),
+        ("avoid tempo >= pulse and tempo <= pulse", "pulse is 5, tempo is 5"),
+        ("avoid tempo == pulse and mode is normal", "pulse is 5, tempo is 5, mode is normal"),
+    ],
+)
+def test_values_are_told_once_and_those_of_enums_by_name(tltlc, clause: str, values: str) -> None:  # type: ignore[no-untyped-def]
+    Path("modes.tltl").write_text(f"{MODES}spec modes {{ {clause} }}\n")
+    Path("modes.csv").write_text("mode,tempo,pulse\nemergency,1,2\nnormal,5,5\n")
+    _, told, *_ = tltlc("monitor", "modes.tltl", "modes.csv").err.splitlines()
+    assert told == f"at step 2: {values}"
+
+
+def test_a_table_says_yes_and_no_of_the_values_of_enums_and_of_what_is_remembered_of_them(tltlc) -> None:  # type: ignore[no-untyped-def]
+    Path("modes.tltl").write_text(f"{MODES}spec modes {{ keep once (mode is alert) or mode is normal }}\n")
+    Path("modes.csv").write_text("mode\nnormal\nalert\n")
+    lines = tltlc("monitor", "modes.tltl", "modes.csv", "--table").out.splitlines()
+    steps = [line.split()[-2:] for line in lines if line.startswith("    ")]
+    assert steps == [["no", "yes"], ["yes", "no"]]
 
 
 def test_the_json_document_has_the_failure_in_fields(tltlc) -> None:  # type: ignore[no-untyped-def]

@@ -147,6 +147,22 @@ def test_the_settings_of_the_project_and_of_the_call_count(tmp_path: Path) -> No
     anyio.run(session)
 
 
+def test_values_of_enums_are_told_by_name_and_are_numbers_in_the_document(tmp_path: Path) -> None:
+    async def session() -> None:
+        async with connected(tmp_path) as agent:
+            spec = "signal mode: (calm, alert)\nspec s { avoid mode is calm and previously (mode is alert) }\n"
+            rows = [{"mode": "alert"}, {"mode": "calm"}]
+            result = await agent.call("monitor", text=spec, rows=rows, from_step=2)
+            assert "at step 2: mode is calm, mode was alert at the step before" in text(result).splitlines()
+            (line,) = (line for line in text(result).splitlines() if line.startswith("step 2: "))
+            assert line.endswith("; mode is calm yes, previously (mode is alert) yes, mode is alert no")
+            judged = result.structured_content
+            assert judged is not None
+            assert judged["failure"]["atoms"] == {"mode is calm": 1.0, "previously (mode is alert)": 1.0}
+
+    anyio.run(session)
+
+
 def test_traces_in_files_are_judged_together(tmp_path: Path) -> None:
     (tmp_path / "leave.tltl").write_text(SPEC, encoding="utf-8")
     (tmp_path / "runs").mkdir()

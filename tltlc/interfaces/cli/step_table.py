@@ -6,12 +6,10 @@ from collections.abc import Iterator, Sequence
 from typing import Final
 
 from tltlc.automaton.fspa import Fspa
-from tltlc.automaton.memory import schedule
 from tltlc.automaton.text import label_text
-from tltlc.expression.tree import AtomValue
 from tltlc.monitor.run import RunStep
-from tltlc.program.flags import Flags
 from tltlc.tools.judge.measures import short_number
+from tltlc.tools.judge.step_values import atom_value, truths
 
 _NUMBER: Final = 9
 """The width of a column of numbers with three digits: ``-1.23e-05`` is the longest."""
@@ -26,7 +24,7 @@ class StepTable:
     """
 
     def __init__(self, fspa: Fspa, width: int) -> None:
-        self._fspa, self._width, self._known = fspa, width, flags(fspa)
+        self._fspa, self._width, self._truths = fspa, width, truths(fspa)
         self._to_do = label_text(fspa, 0)
         self._choose(())
 
@@ -38,13 +36,12 @@ class StepTable:
         self._atoms: list[int] = []
         for index in dict.fromkeys((*first, *range(len(self._fspa.atoms)))):
             name = self._fspa.atoms[index].name
-            wide = max(len(name), 3 if index in self._known else _NUMBER)
+            wide = max(len(name), 3 if index in self._truths else _NUMBER)
             if used + wide <= self._width or (first and not self._atoms):
                 self._titles.append((name, wide))
                 self._atoms.append(index)
                 used += wide + 2
         self.left_out = len(self._fspa.atoms) - len(self._atoms)
-        self._flags = [index in self._known for index in self._atoms]
 
     def head(self) -> Iterator[str]:
         """Yield the lines before the first step: what the spec asks for, and the titles of the columns."""
@@ -61,10 +58,7 @@ class StepTable:
         if step.failed_step == row.number and not set(deciding) <= set(self._atoms):
             self._choose(deciding)
             yield self._line([title for title, _ in self._titles])
-        atoms = [
-            ("yes" if row.values[index] > 0.0 else "no") if flag else short_number(row.values[index])
-            for index, flag in zip(self._atoms, self._flags, strict=True)
-        ]
+        atoms = [atom_value(index, row.values[index], self._truths) for index in self._atoms]
         yield self._line(
             [str(row.number), step.verdict, short_number(step.progress), short_number(step.reward), *atoms]
         )
@@ -79,9 +73,3 @@ class StepTable:
             for cell, (title, wide) in zip(cells, self._titles, strict=True)
         ]
         return "  ".join(aligned).rstrip()
-
-
-def flags(fspa: Fspa) -> frozenset[int]:
-    """Return the atoms that are only -1 or 1, so that they are true or false and nothing between."""
-    sharp = Flags(fspa, schedule(fspa))
-    return frozenset(index for index, atom in enumerate(fspa.atoms) if AtomValue(atom.name) in sharp)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from typing import Any
+from typing import Any, Final
 
 from tltlc.automaton.memory import schedule
 from tltlc.automaton.value_phrases import VALUES, value_words
@@ -15,6 +15,10 @@ from tltlc.monitor.run import RunStep
 from tltlc.monitor.traces import TraceSample
 from tltlc.program.flags import Flags
 from tltlc.tools.judge.measures import measure, short_number
+from tltlc.tools.judge.step_values import StepValue, enum_of, signal_value
+
+_MEMORY: Final = ("once", "historically", "since", "previously", "last")
+"""The kinds of the registers that remember how a formula held."""
 
 
 @record
@@ -61,9 +65,9 @@ class FailingStep:
             place = self._places[clause] if self._places else None
             named = f"clause {clause + 1}" if place is None else f"{place.file}:{place.line}"
             yield f"{named}: {fspa.clauses[clause]}"
-        values = ", ".join(self._value_words(atom) for atom, _ in failed.cause.prime)
+        values = dict.fromkeys(value for atom, _ in failed.cause.prime for value in self._values_of(atom))
         if values:
-            yield f"at step {failed.step}: {values}"
+            yield f"at step {failed.step}: {', '.join(value.text for value in values)}"
         yield f"what remained before: {unmet_words(fspa, failed)}"
 
     def values(self) -> dict[str, Any] | None:
@@ -89,20 +93,31 @@ class FailingStep:
             "unmet": unmet_words(fspa, failed),
         }
 
-    def _value_words(self, atom: int) -> str:
+    def _values_of(self, atom: int) -> tuple[StepValue, ...]:
         """Return the value of an atom, or for a comparison the values that it compares."""
-        fspa = self._monitor.fspa
+        fspa, value = self._monitor.fspa, self._values[atom]
         if fspa.atoms[atom].timer is not None:
-            return atom_words(fspa, atom)
+            return (StepValue(atom_words(fspa, atom)),)
         measured = measure(fspa, atom, self._known)
-        if measured is not None and measured.text is not None:
-            return measured.text
+        if measured is not None and measured.value is not None:
+            return (StepValue(measured.quantity, f"{short_number(measured.value)} {measured.unit}".rstrip()),)
         if AtomValue(fspa.atoms[atom].name) in Flags(fspa, schedule(fspa)):
-            return f"{atom_words(fspa, atom)} is {'true' if self._values[atom] > 0.0 else 'false'}"
-        read = [node.name for node in nodes(fspa.atoms[atom].expression) if isinstance(node, SignalValue)]
-        words = {register.name: value_words(register) for register in fspa.registers if register.kind in VALUES}
-        measures = [f"{words.get(name, name)} is {short_number(self._known[name])}" for name in dict.fromkeys(read)]
-        if measured is not None:
-            return ", ".join(measures)
-        value = f"{atom_words(fspa, atom)} is {short_number(self._values[atom])}"
-        return f"{value} ({', '.join(measures)})" if measures else value
+            return (StepValue(atom_words(fspa, atom), "true" if value > 0.0 else "false"),)
+        registers = {register.name: register for register in fspa.registers}
+        read = fspa.atoms[atom].expression
+        if isinstance(read, SignalValue) and read.name in registers and registers[read.name].kind in _MEMORY:
+            return (StepValue(atom_words(fspa, atom, holds=value > 0.0)),)
+        words = {name: value_words(register) for name, register in registers.items() if register.kind in VALUES}
+        signals = {signal.name: signal for signal in fspa.signals}
+        found = {node.name for node in nodes(read) if isinstance(node, SignalValue)}
+        names = sorted(found, key=lambda name: (name in registers, name))
+        reads = tuple(
+            StepValue(
+                words.get(name, name),
+                signal_value(signals[name], self._known[name]) if name in signals else short_number(self._known[name]),
+            )
+            for name in names
+        )
+        if measured is not None or enum_of(fspa, atom) is not None:
+            return reads
+        return (StepValue(atom_words(fspa, atom), short_number(value), reads),)

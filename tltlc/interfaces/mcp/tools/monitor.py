@@ -29,6 +29,7 @@ from tltlc.tools.judge.json_values import step_values, summary_values, trace_val
 from tltlc.tools.judge.judge import Judge
 from tltlc.tools.judge.measures import short_number
 from tltlc.tools.judge.pool import judge_files
+from tltlc.tools.judge.step_values import atom_value, truths
 from tltlc.tools.judge.summary import summary_text, trace_text
 from tltlc.tools.judge.trace_files import find_traces
 from tltlc.tools.judge.verdict import JudgedTrace
@@ -74,7 +75,8 @@ def _judge(arguments: Mapping[str, Any]) -> Answer:
     lines = [f"{trace.name}: {trace_text(trace)}" for trace in traces]
     lines += [summary_text(traces)] if len(traces) > 1 else []
     lines += [] if failing is None else failing.details()
-    lines += [_row_text(fspa, row) for row in rows]
+    known = truths(fspa) if rows else frozenset()
+    lines += [_row_text(fspa, row, known) for row in rows]
     reported = [(trace, diagnostic) for trace in traces for diagnostic in trace.diagnostics]
     missing = [diagnostic for trace, diagnostic in reported if trace.verdict is None and not diagnostic.labels]
     lines += [f"\n{diagnostic_text(diagnostic)}" for _, diagnostic in reported if diagnostic not in missing]
@@ -145,8 +147,9 @@ def _samples(fspa: Fspa, name: str, data: bytes) -> Iterator[TraceSample]:
     return read_trace(stream, name, fspa.signals, fspa.clock_s, clock_varies=fspa.clock_varies)
 
 
-def _row_text(fspa: Fspa, row: RunStep) -> str:
-    atoms = ", ".join(f"{atom.name} {short_number(value)}" for atom, value in zip(fspa.atoms, row.values, strict=True))
+def _row_text(fspa: Fspa, row: RunStep, known: frozenset[int]) -> str:
+    values = (atom_value(index, value, known) for index, value in enumerate(row.values))
+    atoms = ", ".join(f"{atom.name} {value}" for atom, value in zip(fspa.atoms, values, strict=True))
     return f"step {row.number}: {row.step.verdict}, progress {short_number(row.step.progress)}; {atoms}"
 
 
