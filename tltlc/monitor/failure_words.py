@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Final
 
 from tltlc.automaton.fspa import Fspa
 from tltlc.automaton.memory_phrases import spoken
@@ -11,6 +12,9 @@ from tltlc.logic import formula as f
 from tltlc.logic.text.phrases import with_opposites
 from tltlc.logic.text.printer import words_text
 from tltlc.monitor.failure import Cause, Failure
+
+_LONGEST: Final = 300
+"""A line shows at most this many characters of what remains to be satisfied."""
 
 
 def failure_words(fspa: Fspa, failed: Failure, steps: int | None = None, time: str = "") -> str:
@@ -58,6 +62,14 @@ def atom_words(fspa: Fspa, atom: int, *, holds: bool = True) -> str:
 def unmet_words(fspa: Fspa, failed: Failure) -> str:
     """Return what remained to be satisfied before the step that failed, in words."""
     return label_text(fspa, failed.state)
+
+
+def shortened(words: str) -> str:
+    """Return a text of at most 300 characters unchanged, and of a longer one the words that fit, and "…"."""
+    if len(words) <= _LONGEST:
+        return words
+    start = words[: _LONGEST - 2]
+    return f"{start.rpartition(' ')[0] or start} …"
 
 
 def _listed(names: Sequence[str], conjunction: str) -> str:

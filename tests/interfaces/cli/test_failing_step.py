@@ -105,6 +105,22 @@ def test_a_table_says_yes_and_no_of_the_values_of_enums_and_of_what_is_remembere
     assert steps == [["no", "yes"], ["yes", "no"]]
 
 
+def test_a_long_formula_that_remains_is_cut_but_not_in_json(tltlc) -> None:  # type: ignore[no-untyped-def]
+    goals = "".join(f"signal goal_number_{number}: bool\n" for number in range(30))
+    chain = " then ".join(f"goal_number_{number}" for number in range(30))
+    Path("long.tltl").write_text(f"{goals}signal dead: bool\nspec long {{ reach {chain}\n avoid dead }}\n")
+    Path("long.csv").write_text(",".join((*(f"goal_number_{number}" for number in range(30)), "dead\n")))
+    with Path("long.csv").open("a") as file:
+        file.write("0," * 30 + "1\n")
+    *_, remained, _ = tltlc("monitor", "long.tltl", "long.csv").err.splitlines()
+    words = remained.removeprefix("what remained before: ")
+    assert words.startswith("Reach goal_number_0, then goal_number_1, ")
+    assert words.endswith(" then …")
+    assert len(words) <= 300
+    unmet = json.loads(tltlc("monitor", "long.tltl", "long.csv", "--json").out)["failure"]["unmet"]
+    assert unmet.endswith("then goal_number_29, and avoid dead throughout.")
+
+
 def test_the_json_document_has_the_failure_in_fields(tltlc) -> None:  # type: ignore[no-untyped-def]
     document = json.loads(tltlc("monitor", "boss.tltl", trace("0,0,50", "1,0,50"), "--json").out)
     failure = document["failure"]

@@ -7,6 +7,7 @@ from typing import Final
 
 from tltlc.automaton.fspa import Fspa
 from tltlc.automaton.text import label_text
+from tltlc.monitor.failure_words import shortened
 from tltlc.monitor.run import RunStep
 from tltlc.tools.judge.measures import short_number
 from tltlc.tools.judge.step_values import atom_value, truths
@@ -45,7 +46,7 @@ class StepTable:
 
     def head(self) -> Iterator[str]:
         """Yield the lines before the first step: what the spec asks for, and the titles of the columns."""
-        yield f"to do: {self._to_do}"
+        yield f"to do: {shortened(self._to_do)}"
         yield self._line([title for title, _ in self._titles])
 
     def rows(self, row: RunStep, deciding: Sequence[int] = ()) -> Iterator[str]:
@@ -65,7 +66,7 @@ class StepTable:
         if step.label_english != self._to_do:
             self._to_do = step.label_english
             if step.verdict in ("pending", "holding"):
-                yield f"to do: {self._to_do}"
+                yield f"to do: {shortened(self._to_do)}"
 
     def _line(self, cells: list[str]) -> str:
         aligned = [

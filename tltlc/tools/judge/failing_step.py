@@ -9,7 +9,7 @@ from tltlc.automaton.memory import schedule
 from tltlc.automaton.value_phrases import VALUES, value_words
 from tltlc.core.record import record
 from tltlc.expression.tree import AtomValue, SignalValue, nodes
-from tltlc.monitor.failure_words import atom_words, unmet_words
+from tltlc.monitor.failure_words import atom_words, shortened, unmet_words
 from tltlc.monitor.monitor import Monitor
 from tltlc.monitor.run import RunStep
 from tltlc.monitor.traces import TraceSample
@@ -68,7 +68,7 @@ class FailingStep:
         values = dict.fromkeys(value for atom, _ in failed.cause.prime for value in self._values_of(atom))
         if values:
             yield f"at step {failed.step}: {', '.join(value.text for value in values)}"
-        yield f"what remained before: {unmet_words(fspa, failed)}"
+        yield f"what remained before: {shortened(unmet_words(fspa, failed))}"
 
     def values(self) -> dict[str, Any] | None:
         """Return the failure as JSON values; None if the trace does not fail.

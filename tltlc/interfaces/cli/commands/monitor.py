@@ -272,12 +272,13 @@ def _print_lines(lines: Iterable[str], stream: TextIO | None = None) -> None:
 def _judgement(result: TraceOutcome, monitor: Monitor, failure: TraceFailure) -> Iterator[str]:
     """Yield the lines with the verdict of the trace; if it is not accepted, also why, and what remains."""
     from tltlc.automaton.text import label_text
+    from tltlc.monitor.failure_words import shortened
 
     if monitor.failure is not None:
         yield from failure.lines("not accepted", result.steps)
         return
     if not result.accepted:
-        yield f"what remains: {label_text(monitor.fspa, monitor.state)}"
+        yield f"what remains: {shortened(label_text(monitor.fspa, monitor.state))}"
     steps = f"{result.steps} step{'' if result.steps == 1 else 's'}"
     yield f"{'accepted' if result.accepted else 'not accepted'}: {result.verdict} after {steps}"
 
