@@ -70,13 +70,22 @@ class Counted:
     number: str
 
 
-Event = State | Held | Counted
+@record
+class Crossing:
+    """The step at which a number crosses a limit: ``health falls below 20``."""
+
+    state: State
+
+
+Event = State | Held | Counted | Crossing
 
 
 def as_state(event: Event) -> State | None:
     """Return the condition that an event is on one step; None if the language has none for it."""
     if isinstance(event, State):
         return event
+    if isinstance(event, Crossing):
+        return State(f"begins ({event.state.text})")
     if isinstance(event, Counted):
         return State(f"times({event.state.text}) {event.sign or '>='} {event.number}", ATOM,
                      f"times({event.state.text}) {NEGATED_SIGN[event.sign or '>=']} {event.number}")  # fmt: skip
@@ -306,6 +315,16 @@ class Conditions:
         signs = {"falls": "<", "rises": ">", "stays": "==", "varies": "!="}
         return _change(now, signs[change], before)
 
+    def never_changes(self, term: Term, change: Change) -> State | None:
+        state = self.changes(term, change)
+        return None if state is None else state.negated()
+
+    def falls_below(self, number: Number, limit: Number) -> Crossing | None:
+        return _crossing(comparison(number, "<", limit))
+
+    def rises_above(self, number: Number, limit: Number) -> Crossing | None:
+        return _crossing(comparison(number, ">", limit))
+
     def changes_by(self, term: Term, change: Change, step: Number) -> State | None:
         return self.changes_by_compared(term, change, "==", step)
 
@@ -383,6 +402,10 @@ class Conditions:
 
     def since(self, state: State, start: State) -> State:
         return State(f"(not {start.at(ATOM)} since {state.at(ATOM)})")
+
+
+def _crossing(state: State | None) -> Crossing | None:
+    return None if state is None else Crossing(state)
 
 
 def _is(name: Term, value: Term) -> State:

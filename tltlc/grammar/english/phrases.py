@@ -78,8 +78,13 @@ PHRASES: Final[Mapping[str, str]] = {
     "is on|"
     "has been|be|was|stays in",
     "is_not": "is not|isn't|not|not in|not at|is not in|is not at|does not equal|differs from|is other than",
+    "earlier": "before|earlier|ago|beforehand|before that",
+    "in_total": "in total|total|altogether|overall|in all|in sum",
+    "falls_below": "falls below|drops below|goes below|drops under|falls under",
+    "rises_above": "rises above|goes above|goes over|exceeds",
     "is_never": "is never|never",
-    "when_it": "at|when|on|from|as of|since|during|at time of|at moment of|before",
+    "when_it": "at start of|at beginning of|at end of|at last|"
+    "at|when|on|from|as of|since|during|at time of|at moment of|before",
     "in_any": "within|in|in any|per|during|within any|every",
     "was": "was|was previously|had been|was before",
     "becomes": "becomes|become|turns|turn|changes to|change to|turns to|turns into|goes to|go to|switches to|"
@@ -95,9 +100,11 @@ PHRASES: Final[Mapping[str, str]] = {
     "at the step before|at step before|was true on step before",
     "ever": "ever|has ever happened|has happened|has already happened",
     "previously": "previously|prev",
-    "at_most": "at most|no more than|not more than|up to|maximum|max|maximum of|not above|less than or equal to|"
+    "at_most": "never rises above|never exceeds|never goes above|at most|"
+    "no more than|not more than|up to|maximum|max|maximum of|not above|less than or equal to|"
     "not exceed|no higher than|no longer than|not longer than",
-    "at_least": "at least|no less than|not less than|no fewer than|minimum|min|minimum of|not below|"
+    "at_least": "never drops below|never falls below|never goes below|doesn't drop below|does not drop below|at least|"
+    "no less than|not less than|no fewer than|minimum|min|minimum of|not below|"
     "greater than or equal to|more than or equal to",
     "more": "more than|greater than|above|over|exceeds|higher than|longer than|goes above|rises above|goes over|"
     "go above|"

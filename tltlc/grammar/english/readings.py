@@ -8,6 +8,7 @@ from itertools import islice, product
 from typing import TYPE_CHECKING, Any, Final
 
 from tltlc.core.record import record
+from tltlc.grammar.english.conditions import Crossing
 from tltlc.grammar.english.phrases import grammar_text
 from tltlc.grammar.english.rules import Reading, Rules
 from tltlc.grammar.english.terminals import terms
@@ -102,8 +103,10 @@ def _values(node: Any, rules: Rules) -> list[Any]:
 
 
 def _unique(values: list[Any]) -> list[Any]:
+    """Return the different values; the crossing of a limit is also read as the state behind it, which is left out."""
+    crossed = [value.state for value in values if isinstance(value, Crossing)]
     found: list[Any] = []
     for value in values:
-        if value not in found:
+        if value not in found and value not in crossed:
             found.append(value)
     return found

@@ -5,7 +5,17 @@ from __future__ import annotations
 from typing import Final, Literal
 
 from tltlc.core.record import record, replace
-from tltlc.grammar.english.conditions import Change, Conditions, Counted, Duration, Event, Held, Number, as_state
+from tltlc.grammar.english.conditions import (
+    Change,
+    Conditions,
+    Counted,
+    Crossing,
+    Duration,
+    Event,
+    Held,
+    Number,
+    as_state,
+)
 from tltlc.grammar.english.terminals import Term
 from tltlc.grammar.mistakes.sentences.answers import Answer
 from tltlc.grammar.mistakes.sentences.rules import answered
@@ -43,6 +53,8 @@ class Goals:
 
 
 _LASTING: Final = ("while", "as long as")
+_MOST_GOALS: Final = 8
+"""The most goals that repeated goals are written out to."""
 _MOST_STEPS: Final = 8
 """The most steps after which a condition must hold: a monitor has up to two to the power of them states."""
 
@@ -69,6 +81,8 @@ class Rules(Conditions):
             return _limited(event, NEGATED_SIGN.get(event.sign or ">=", ""))
         if isinstance(event, Held):
             return _never_held(event)
+        if isinstance(event, Crossing):
+            return Reading((f"avoid {event.state.text}",))
         if event.level == OR:
             return None  # both, or the second is another rule
         return Reading((f"avoid {event.text}",))
@@ -156,6 +170,19 @@ class Rules(Conditions):
         known = [state for state in states if state is not None]
         return Goals(tuple(known)) if len(known) == len(states) else None
 
+    def repeated(self, *parts: Event | str) -> Goals | None:
+        """Return goals that are repeated: `(a then b) 3 times`."""
+        goals = self.goals(*(part for part in parts if not isinstance(part, str)))
+        number = parts[-1]
+        if goals is None or not isinstance(number, str) or not number.isdecimal():
+            return None
+        return Goals(goals.states * int(number)) if 0 < int(number) * len(goals.states) <= _MOST_GOALS else None
+
+    def total(self, state: State, sign: str, duration: Duration) -> None:
+        self.limits.append(
+            f"no clause can say for how long `{state.text}` holds in total: let the game add the time up, and supply it"
+        )
+
     def reach(self, goals: Goals) -> _Found:
         return Reading((f"reach {' then '.join(goal.at(OR) for goal in goals.states)}",))
 
@@ -181,6 +208,10 @@ class Rules(Conditions):
 
     def only_after(self, state: State, event: Event) -> _Found:
         condition = as_state(event)
+        if condition is not None and isinstance(event, Held):
+            # Once a condition has held so long, it would have held so long for ever.
+            begun = state.text if state.text.startswith("begins ") else f"begins {state.at(ATOM)}"
+            return Reading((f"keep {begun} implies {condition.at(OR)}",))
         return None if condition is None else Reading((f"keep {state.at(OR)} implies once {condition.at(ATOM)}",))
 
     def exactly_when(self, state: State, event: Event) -> _Found:
@@ -263,6 +294,15 @@ class Rules(Conditions):
         if _is_negative(state):
             return None  # it may have to hold at one step, or at all of them
         return Asked(Answer("within", state, duration.text))
+
+    def within_before(self, state: State, duration: Duration) -> Asked:
+        return Asked(Answer("now", State(f"once within {duration.text} {state.at(ATOM)}")))
+
+    def within_unless(self, state: State, duration: Duration, event: Event) -> Asked | None:
+        exception = as_state(event)
+        if exception is None or _is_negative(state) or state.level > OR:
+            return None
+        return Asked(Answer("within", joined([state, exception], "or"), duration.text))
 
     def within_first(self, duration: Duration, state: State) -> Asked | None:
         return self.within(state, duration)
@@ -398,7 +438,9 @@ def _until(state: State, end: State) -> list[Asked]:
 
 
 def _conditional(when: When, event: Event, answers: list[Asked]) -> _Found:
-    state = as_state(event)
+    is_later = all(asked.answer.kind in ("within", "eventually", "lasting", "delayed") for asked in answers)
+    # An answer on the same step is asked for while the number is beyond the limit.
+    state = event.state if isinstance(event, Crossing) and not is_later else as_state(event)
     if state is None:
         return None
     readings = [_answer_readings(when, event, state, asked) for asked in answers]
