@@ -110,6 +110,24 @@ MEANT = [
 ]
 
 
+OF_ENUM = "signal engine: (Ok, Hot)"
+ENUMS = [
+    ("enum Engine { Ok, Hot }\nsignal engine: Engine", OF_ENUM),
+    ("signal engine: Engine\nenum Engine {\n  Ok,\n  Hot\n}", OF_ENUM),
+    ("enum class Engine : byte { Ok = 0, Hot = 1 };\nEngine engine = Engine::Ok;", OF_ENUM),
+    ("enum Engine { Ok, Hot }; signal engine: Engine", OF_ENUM),
+    ("type Engine = Ok | Hot\nsignal engine: enum Engine", OF_ENUM),
+    ("type Engine = Ok | Hot;\nEngine engine;", OF_ENUM),
+    ("enum Engine { Ok, Hot }\nsignal engine: Engine\nEngine pump", f"{OF_ENUM}\nsignal pump: (Ok, Hot)"),
+    ("enum Engine { Ok, Hot }\nsignal engine, pump: Engine", f"{OF_ENUM}\nsignal pump: (Ok, Hot)"),
+    (
+        "enum Engine { Ok, Hot }\nenum Mood { Calm, Angry }\nsignals: engine: Engine, mood: Mood",
+        f"{OF_ENUM}\nsignal mood: (Calm, Angry)",
+    ),
+    ("type engine = Ok | Hot", OF_ENUM),
+]
+
+
 def diagnostics(text: str) -> list[Diagnostic]:
     try:
         compile_text(text)
@@ -139,6 +157,28 @@ def test_the_first_fix_gives_the_declaration(typed: str, meant: str) -> None:
         "spec" in meant and "".join(mended(typed).split()) == "".join(meant.split())
     )
     assert not diagnostics(meant)
+
+
+@pytest.mark.parametrize(("typed", "meant"), ENUMS)
+def test_an_enum_and_its_signals_get_one_error_with_one_fix(typed: str, meant: str) -> None:
+    (error,) = diagnostics(typed)
+    assert meant.splitlines()[0] in (error.help or "")
+    source = SourceFile("a.tltl", typed)
+    assert apply_edits(source, error.fixes[0].edits).text.strip() == meant
+    assert not diagnostics(meant)
+
+
+def test_the_help_for_an_enum_shows_the_signals_and_says_to_delete_it() -> None:
+    (error,) = diagnostics("enum Engine { Ok, Hot }\nsignal engine: Engine")
+    assert error.help == "write `signal engine: (Ok, Hot)`, and delete the line with `enum`"
+
+
+def test_the_clauses_are_checked_with_the_values_of_the_enum() -> None:
+    _, equal, unknown = diagnostics(
+        "enum Engine { Ok, Hot }\nsignal engine: Engine\nspec s { reach engine == Hot avoid engine is Cold }"
+    )
+    assert equal.help == "write `engine is Hot`"
+    assert unknown.help == "its values are `Ok`, `Hot`"
 
 
 @pytest.mark.parametrize(

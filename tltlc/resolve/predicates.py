@@ -175,6 +175,8 @@ def unknown_type_error(name: str, at: Parameter | tree.SignalDecl | tree.ParamDe
     elsewhere = units.type_of_unit(UNITS_ELSEWHERE.get(name.lower(), name)) or _TYPES_ELSEWHERE.get(name.lower())
     suggestion = elsewhere or likely_name(name, known)
     advice = f"did you mean `{suggestion}`?" if suggestion else f"the types are {', '.join(known)}"
+    if suggestion is None and isinstance(at, tree.SignalDecl):
+        advice += ", or a list of values: `(idle, alert)`"
     if name.lower() == "enum" and isinstance(at, tree.SignalDecl):
         suggestion, advice = None, f"list the values: `signal {at.name}: (idle, alert)`"
     start = scope.source.text.find(name, at.name_span.end, at.span.end)

@@ -5,7 +5,7 @@ A text with a syntax error has no syntax tree, so the types are those that its t
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from functools import lru_cache
 from itertools import pairwise
 from typing import Final
@@ -13,6 +13,7 @@ from typing import Final
 from tltlc.core.record import record
 from tltlc.core.source import SourceFile
 from tltlc.grammar.lexer import Token, tokenize
+from tltlc.grammar.mistakes.declaration_forms.enums import NamedEnums
 from tltlc.grammar.mistakes.declaration_forms.reading import meant_declaration, tokens_as_meant
 from tltlc.grammar.mistakes.fragments import declarations
 
@@ -71,7 +72,7 @@ def _declared_names(text: str) -> DeclaredNames:
     has_clock = clock_varies = has_imports = False
     step_s = 0.0
     tokens = tokenize(text).tokens[:-1]
-    for piece in _as_meant(declarations(SourceFile("", text, "text"), tokens), tokens):
+    for piece in _as_meant(list(declarations(SourceFile("", text, "text"), tokens)), tokens):
         kind = piece[0].type
         has_imports |= kind == "IMPORT"
         has_clock |= kind == "CLOCK" and len(piece) > 1 and piece[1].type == "NUMBER"
@@ -83,10 +84,13 @@ def _declared_names(text: str) -> DeclaredNames:
     return DeclaredNames(names, has_clock, clock_varies, has_imports, step_s)
 
 
-def _as_meant(pieces: Iterable[list[Token]], text: Sequence[Token]) -> Iterator[list[Token]]:
+def _as_meant(pieces: Sequence[list[Token]], tokens: Sequence[Token]) -> Iterator[list[Token]]:
     """Yield the tokens of declarations; those in other forms as they should be written."""
+    enums = NamedEnums(pieces, tokens)
     for piece in pieces:
-        meant = meant_declaration(piece, text)
+        if enums.declares(piece):
+            continue
+        meant = meant_declaration(piece, enums.text)
         if meant is None:
             yield piece
         else:

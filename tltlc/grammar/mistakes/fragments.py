@@ -16,7 +16,7 @@ from tltlc.grammar.keywords import CLAUSES, DECLARATIONS, SYNONYMS, TEST_ITEMS, 
 from tltlc.grammar.lexer import BAD, Token
 from tltlc.grammar.mistakes.declaration_forms.clocks import CLOCK_WORDS
 from tltlc.grammar.mistakes.declaration_forms.heads import SPEC_WORDS
-from tltlc.grammar.mistakes.declaration_forms.signals import ENTITY_WORDS, SIGNAL_WORDS, TYPE_WORDS
+from tltlc.grammar.mistakes.declaration_forms.signals import ENTITY_WORDS, ENUM_WORDS, SIGNAL_WORDS, TYPE_WORDS
 from tltlc.grammar.tables import load
 
 _ENDS: Final = {"NAME", "NUMBER", "UNIT", "STRING", "TRUE", "FALSE", "RPAR", "RSQB", "RBRACE", "LBRACE", "LIMIT"}
@@ -63,11 +63,13 @@ def declarations(source: SourceFile, tokens: Sequence[Token]) -> Iterator[list[T
         piece.append(token)
         if token.type == "LBRACE":
             depth += 1
-        elif token.type == "RBRACE" and depth > 0:
-            depth -= 1
-            if depth == 0:
-                yield piece
-                piece = []
+        is_enum = piece[0].text in ENUM_WORDS
+        is_last = (token.type == "RBRACE" and depth > 0) or (is_enum and token.text == ";")
+        depth -= token.type == "RBRACE" and depth > 0
+        is_marked = is_enum and index + 1 < len(tokens) and tokens[index + 1].text == ";"
+        if is_last and depth == 0 and not is_marked:
+            yield piece
+            piece = []
     if piece:
         yield piece
 
@@ -173,6 +175,8 @@ def _is_declared(tokens: Sequence[Token], index: int) -> bool:
     word, before, after = tokens[index].text.lower(), tokens[index - 1], tokens[index + 1 : index + 3]
     if tokens[index].type != "NAME" or not after or (before.type not in _ENDS and before.text not in _SEPARATORS):
         return False
+    if before.text == ";" and after[0].type == "NAME":
+        return True
     if word in CLOCK_WORDS:
         return after[0].text in ("=", ":") or after[0].type == "NUMBER"
     if word in SPEC_WORDS:
@@ -181,7 +185,7 @@ def _is_declared(tokens: Sequence[Token], index: int) -> bool:
         return after[0].text == ":"
     if after[0].text == ":":
         return after[1:] != [] and after[1].text.lower() in TYPE_WORDS
-    return after[0].type == "NAME" and word in SIGNAL_WORDS | ENTITY_WORDS | TYPE_WORDS | {"enum"}
+    return after[0].type == "NAME" and word in SIGNAL_WORDS | ENTITY_WORDS | TYPE_WORDS | {*ENUM_WORDS}
 
 
 def _is_like_keyword(word: str, keywords: dict[str, str]) -> bool:

@@ -15,7 +15,9 @@ from tltlc.grammar.builder import Builder
 from tltlc.grammar.keywords import CLAUSES, TEST_ITEMS
 from tltlc.grammar.lexer import END, Token, Tokens
 from tltlc.grammar.mistakes import messages
+from tltlc.grammar.mistakes.declaration_forms.enums import NamedEnums, enum_error
 from tltlc.grammar.mistakes.declaration_forms.heads import SpecHead, read_head
+from tltlc.grammar.mistakes.declaration_forms.meant import MeantDeclaration
 from tltlc.grammar.mistakes.declaration_forms.reading import (
     declaration_error,
     head_error,
@@ -31,8 +33,9 @@ MAX_ERRORS: Final = 200
 
 def recover(source: SourceFile, lexed: Tokens) -> tuple[tuple[tree.Declaration, ...], tuple[Diagnostic, ...]]:
     """Return the declarations that can be read, and an error for each piece of the text that cannot be read."""
-    reader = _Reader(source, lexed)
-    for piece in declarations(source, lexed.tokens[:-1]):
+    pieces = list(declarations(source, lexed.tokens[:-1]))
+    reader = _Reader(source, lexed, NamedEnums(pieces, lexed.tokens))
+    for piece in pieces:
         reader.read_declaration(piece)
         if len(reader.diagnostics) >= MAX_ERRORS:
             break
@@ -42,18 +45,20 @@ def recover(source: SourceFile, lexed: Tokens) -> tuple[tuple[tree.Declaration, 
 class _Reader:
     """Parses the pieces of a text one by one, and collects their declarations and diagnostics."""
 
-    def __init__(self, source: SourceFile, lexed: Tokens) -> None:
+    def __init__(self, source: SourceFile, lexed: Tokens, enums: NamedEnums) -> None:
         self.declarations: list[tree.Declaration] = []
         self.diagnostics: list[Diagnostic] = []
         self._source = source
         self._docs = lexed.docs
-        self._tokens = lexed.tokens
+        self._enums = enums
 
     def read_declaration(self, piece: list[Token]) -> None:
         """Parse the tokens of one declaration, and add the declaration and its errors to the results.
 
         If only some clauses of a spec, or lines of a test, are broken, keep the others.
         """
+        if self._read_enum(piece):
+            return
         before = len(self.diagnostics)
         head = read_head(piece)
         if head:
@@ -82,14 +87,31 @@ class _Reader:
         result = self._attempt("declaration", piece)
         if not isinstance(result, lalr.UnexpectedTokenError):
             return [result]
-        meant = meant_declaration(piece, self._tokens)
+        meant = meant_declaration(piece, self._enums.text)
         if meant is None:
             if not is_refused:
                 self._refuse(piece, "declaration", result)
             return []
         self.diagnostics.append(declaration_error(self._source, piece, meant))
+        return self._as_meant(piece, meant)
+
+    def _as_meant(self, piece: list[Token], meant: MeantDeclaration) -> list[tree.Declaration]:
+        """Return the declarations with which the rest of the text is checked in place of a piece."""
         read = (self._attempt("declaration", tokens) for tokens in tokens_as_meant(piece, meant.read_as))
         return [item for item in read if not isinstance(item, lalr.UnexpectedTokenError)]
+
+    def _read_enum(self, piece: list[Token]) -> bool:
+        """Read an enum with a name, or signals of one; return whether the piece is such a one.
+
+        The enums and their signals get one error together, at the first enum.
+        """
+        enums = self._enums.starting_at(piece)
+        if enums:
+            self.diagnostics.append(enum_error(self._source, enums))
+        signals = self._enums.signals_of(piece)
+        if signals:
+            self.declarations += self._as_meant(piece, signals)
+        return signals is not None or self._enums.declares(piece)
 
     def _read_block(self, piece: list[Token], kind: str) -> tree.Declaration | None:
         """Parse a spec or a test in braces: its head, then each line of its body separately.

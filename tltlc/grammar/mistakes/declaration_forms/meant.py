@@ -2,13 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from tltlc.core.record import record
 from tltlc.grammar.lexer import END, Token
 
 MISSING_RANGE = "in [LOW, HIGH]"
 """Stands in a help for a range that the author did not write."""
+
+
+@record
+class WholeText:
+    """The tokens of a whole file, and the values of each enum that it declares by a name."""
+
+    tokens: Sequence[Token]
+    enums: Mapping[str, tuple[str, ...]]
 
 
 @record
@@ -19,7 +27,8 @@ class MeantDeclaration:
     should be written. ``read_as`` are the declarations with which the rest of the file is checked. They have an
     assumed range where ``lines`` have a placeholder, and there are none if the author may have meant different
     things. ``is_complete`` says whether ``lines`` can replace the text: nothing is left to fill in or to choose.
-    ``help`` replaces the usual "write …", and ``reason`` is added to it.
+    ``help`` replaces the usual "write …", and ``reason`` is added to it. ``enums`` are the names of the file's enums
+    that stand for a list of values in it.
     """
 
     noun: str
@@ -28,6 +37,7 @@ class MeantDeclaration:
     is_complete: bool = True
     help: str = ""
     reason: str = ""
+    enums: tuple[str, ...] = ()
 
 
 class Cursor:

@@ -146,7 +146,7 @@ def _values(cursor: Cursor) -> tuple[str, ...] | None:
         cursor.accept("or", "and")
         if opening and cursor.accept(*_OPENING[opening]):
             return tuple(values)
-        if not is_separated:
+        if not is_separated or cursor.is_done:
             return None if opening else tuple(values)
 
 

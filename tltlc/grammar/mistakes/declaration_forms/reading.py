@@ -11,7 +11,7 @@ from tltlc.grammar.keywords import DECLARATIONS
 from tltlc.grammar.lexer import Token, tokenize
 from tltlc.grammar.mistakes.declaration_forms.clocks import read_clock
 from tltlc.grammar.mistakes.declaration_forms.heads import SpecHead
-from tltlc.grammar.mistakes.declaration_forms.meant import MeantDeclaration
+from tltlc.grammar.mistakes.declaration_forms.meant import MeantDeclaration, WholeText
 from tltlc.grammar.mistakes.declaration_forms.signals import read_entities, read_signals
 
 _LONGEST: Final = 200
@@ -20,10 +20,10 @@ _MOST_SHOWN: Final = 4
 """The most declarations that a help quotes one by one."""
 
 
-def meant_declaration(piece: Sequence[Token], text: Sequence[Token]) -> MeantDeclaration | None:
+def meant_declaration(piece: Sequence[Token], text: WholeText) -> MeantDeclaration | None:
     """Return what a piece is meant to declare; None if it is well formed, or means nothing that is known here.
 
-    ``piece`` are the tokens of the declaration, ``text`` those of the whole file.
+    ``piece`` are the tokens of the declaration, ``text`` the whole file.
     """
     if not piece or len(piece) > _LONGEST:
         return None
@@ -39,7 +39,7 @@ def tokens_as_meant(piece: Sequence[Token], lines: Sequence[str]) -> list[list[T
 
     Words that the piece lacks get its whole span.
     """
-    span = Span(piece[0].start, piece[-1].end)
+    span = span_of_piece(piece)
     places = {token.text: token for token in reversed(piece)}
     declared: list[list[Token]] = []
     for line in lines:
@@ -60,18 +60,17 @@ def declaration_error(source: SourceFile, piece: Sequence[Token], meant: MeantDe
     marked = _mark_at_end(source, piece, meant)
     if marked is not None:
         return marked
-    span = Span(piece[0].start, piece[-1].end)
+    span = span_of_piece(piece)
     first = piece[0]
     is_known = first.text in DECLARATIONS and first.type != "NAME"
     code = "TLT0101" if is_known else "TLT0107"
     title = f"a declaration cannot begin with `{first.text}`"
     if is_known:
         title = f"{'an' if meant.noun == 'entity' else 'a'} {meant.noun} is declared in another form"
-    newline = "\r\n" if "\r\n" in source.text else "\n"
     fixes: tuple[Fix, ...] = ()
     if meant.is_complete and "//" not in source.slice(span):
-        fixes = (replacement_fix(source, span, newline.join(meant.lines)),)
-    return Diagnostic(code, title, (Label(source, _one_line(source, span)),), _help(meant), fixes=fixes)
+        fixes = (replacement_fix(source, span, _newline(source).join(meant.lines)),)
+    return Diagnostic(code, title, (Label(source, span_of_first_line(source, span)),), _help(meant), fixes=fixes)
 
 
 def head_error(source: SourceFile, piece: Sequence[Token], head: SpecHead) -> Diagnostic:
@@ -89,7 +88,7 @@ def head_error(source: SourceFile, piece: Sequence[Token], head: SpecHead) -> Di
     if head.closes:
         edits.append(Edit(Span(piece[-1].end, piece[-1].end), " }" if _is_one_line(source, piece) else "\n}"))
     fixes = (Fix(f"Write `{head.text}`", tuple(edits), "maybe"),) if head.has_name else ()
-    label = Label(source, _one_line(source, span))
+    label = Label(source, span_of_first_line(source, span))
     return Diagnostic("TLT0101" if is_known else "TLT0107", title, (label,), what, fixes=fixes)
 
 
@@ -109,19 +108,37 @@ def _mark_at_end(source: SourceFile, piece: Sequence[Token], meant: MeantDeclara
 def _help(meant: MeantDeclaration) -> str:
     if meant.help:
         return meant.help
-    shown = [f"`{line}`" for line in meant.lines[:_MOST_SHOWN]]
-    if len(meant.lines) > _MOST_SHOWN:
+    return f"write {quoted_lines(meant.lines)}{meant.reason}"
+
+
+def quoted_lines(lines: Sequence[str]) -> str:
+    """Return declarations as a help quotes them: `` `signal a: bool` and `signal b: bool` ``."""
+    shown = [f"`{line}`" for line in lines[:_MOST_SHOWN]]
+    if len(lines) > _MOST_SHOWN:
         shown.append("…")
     *others, last = shown
-    listed = f"{', '.join(others)} and {last}" if others else last
-    return f"write {listed}{meant.reason}"
+    return f"{', '.join(others)} and {last}" if others else last
 
 
-def _one_line(source: SourceFile, span: Span) -> Span:
+def lines_edit(source: SourceFile, span: Span, lines: Sequence[str]) -> Edit:
+    """Return the change that replaces a span by declarations, one on each line."""
+    return Edit(span, _newline(source).join(lines))
+
+
+def _newline(source: SourceFile) -> str:
+    return "\r\n" if "\r\n" in source.text else "\n"
+
+
+def span_of_piece(piece: Sequence[Token]) -> Span:
+    """Return the part of the text that a piece covers."""
+    return Span(piece[0].start, piece[-1].end)
+
+
+def span_of_first_line(source: SourceFile, span: Span) -> Span:
     """Return the part of a span on its first line."""
     first = source.slice(span).split("\n")[0].rstrip()
     return Span(span.start, span.start + len(first))
 
 
 def _is_one_line(source: SourceFile, piece: Sequence[Token]) -> bool:
-    return "\n" not in source.slice(Span(piece[0].start, piece[-1].end))
+    return "\n" not in source.slice(span_of_piece(piece))

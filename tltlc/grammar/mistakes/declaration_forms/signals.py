@@ -7,7 +7,7 @@ from typing import Final
 
 from tltlc.core.record import record, replace
 from tltlc.grammar.lexer import Token
-from tltlc.grammar.mistakes.declaration_forms.meant import MISSING_RANGE, Cursor, MeantDeclaration
+from tltlc.grammar.mistakes.declaration_forms.meant import MISSING_RANGE, Cursor, MeantDeclaration, WholeText
 from tltlc.grammar.mistakes.declaration_forms.ranges import UNIT_OF_TYPE, Range, read_range, read_values, whole_values
 from tltlc.grammar.mistakes.declaration_forms.uses import used_as
 
@@ -23,7 +23,9 @@ TYPES: Final = {
 }
 """Maps names of types, in this and in other languages, to the types of this language."""
 TYPE_WORDS: Final = frozenset(TYPES)
-_LEADING_TYPES: Final = ("bool", "boolean", "int", "integer", "float", "double", "number", "real", "enum")
+ENUM_WORDS: Final = ("enum", "type")
+"""Words that begin the declaration of an enum in other languages."""
+_LEADING_TYPES: Final = ("bool", "boolean", "int", "integer", "float", "double", "number", "real", *ENUM_WORDS)
 """Types that begin a declaration in other languages, as in ``bool seen``."""
 SIGNAL_WORDS: Final = frozenset(
     """
@@ -42,11 +44,15 @@ _IS_TYPE: Final = (":", "=", "as", "is")
 
 @record
 class _Type:
-    """What is declared of a signal: its type, its range and the values of an enum, each empty if none is written."""
+    """What is declared of a signal: its type, its range and the values of an enum, each empty if none is written.
+
+    ``enum`` is the name of the file's enum that has these values.
+    """
 
     type: str = ""
     ends: tuple[str, ...] = ()
     values: tuple[str, ...] = ()
+    enum: str = ""
 
 
 def read_entities(tokens: Sequence[Token]) -> MeantDeclaration | None:
@@ -63,10 +69,10 @@ def read_entities(tokens: Sequence[Token]) -> MeantDeclaration | None:
     return MeantDeclaration("entity", (line,), (line,))
 
 
-def read_signals(tokens: Sequence[Token], text: Sequence[Token]) -> MeantDeclaration | None:
+def read_signals(tokens: Sequence[Token], text: WholeText) -> MeantDeclaration | None:
     """Return the signals that a piece is meant to declare, or None.
 
-    ``text`` are the tokens of the whole file, which say how a signal without a type is used.
+    ``text`` says how a signal without a type is used, and what enums there are.
     """
     cursor = Cursor(tokens)
     word = cursor.token.text.lower()
@@ -91,21 +97,24 @@ def read_signals(tokens: Sequence[Token], text: Sequence[Token]) -> MeantDeclara
         all(meant.is_complete for meant in signals),
         signals[0].help if len(signals) == 1 else "",
         next((meant.reason for meant in signals if meant.reason), ""),
+        tuple(enum for meant in signals for enum in meant.enums),
     )
 
 
-def _signals(cursor: Cursor, text: Sequence[Token], word: str, is_named: bool) -> MeantDeclaration | None:
+def _signals(cursor: Cursor, text: WholeText, word: str, is_named: bool) -> MeantDeclaration | None:
     """Read one or more names with one type."""
-    first = _leading_type(cursor)
+    first = _leading_type(cursor, text)
     names = _names(cursor)
     if not names or not (first is not None or is_named or cursor.token.text == ":"):
         return None
-    if first is not None and first.type == "enum":
+    if first is not None and first.values:
+        type_: _Type | None = first
+    elif first is not None and first.type == "enum":
         cursor.accept(":", "=")
         values = read_values(cursor)
         type_ = _Type(values=values) if values else None
     else:
-        type_ = _type(cursor, first, is_named)
+        type_ = _type(cursor, text, first, is_named)
     if type_ is None:
         return None
     value = _default(cursor)
@@ -116,7 +125,7 @@ def _signals(cursor: Cursor, text: Sequence[Token], word: str, is_named: bool) -
             return None
         is_bool = word in _TRUTHS or value in ("true", "false")
         type_ = _Type("bool") if is_bool else type_
-    meant = _declared(names, type_, text)
+    meant = _declared(names, type_, text.tokens)
     return replace(meant, reason=f"{meant.reason}: the game supplies the value at each step") if value else meant
 
 
@@ -158,16 +167,31 @@ def _parameters(cursor: Cursor) -> str | None:
     return "(x: entity)" if inside == "entity" else f"({inside})".replace(" :", ":").replace(" ,", ",")
 
 
-def _leading_type(cursor: Cursor) -> _Type | None:
+def _leading_type(cursor: Cursor, text: WholeText) -> _Type | None:
     """Read a type before the name, as in ``bool seen``; None if there is none."""
+    start = cursor.at
+    enum = _enum(cursor, text)
+    if enum is not None and cursor.token.type == "NAME" and cursor.token.text.lower() not in _IS_TYPE:
+        return enum
+    cursor.at = start
     word, following = cursor.token.text.lower(), cursor.peek(1)
     if word not in _LEADING_TYPES or following.type != "NAME" or following.text.lower() in (*_IS_TYPE, "in", "from"):
         return None
     cursor.at += 1
-    return _Type("enum") if word == "enum" else _Type(TYPES[word])
+    return _Type("enum") if word in ENUM_WORDS else _Type(TYPES[word])
 
 
-def _type(cursor: Cursor, first: _Type | None, is_named: bool) -> _Type | None:
+def _enum(cursor: Cursor, text: WholeText) -> _Type | None:
+    """Read the name of an enum of the file, as in ``Engine`` and ``enum Engine``; None if there is none."""
+    is_named = cursor.token.text == "enum" and cursor.peek(1).text in text.enums
+    name = cursor.peek(is_named).text
+    if name not in text.enums:
+        return None
+    cursor.at += 1 + is_named
+    return _Type(values=text.enums[name], enum=name)
+
+
+def _type(cursor: Cursor, text: WholeText, first: _Type | None, is_named: bool) -> _Type | None:
     """Read the type, range or values after the names; None if they cannot be read."""
     is_typed = cursor.token.text.lower() in _IS_TYPE or cursor.accept("of", "type")
     if first is None and cursor.peek().text == "{" and is_named:
@@ -176,6 +200,9 @@ def _type(cursor: Cursor, first: _Type | None, is_named: bool) -> _Type | None:
     is_value = cursor.token.text == "=" and cursor.peek(1).type in ("NUMBER", "TRUE", "FALSE", "MINUS")
     if is_typed and not is_value and cursor.accept(*_IS_TYPE):
         cursor.at += cursor.token.text in ("a", "an") and cursor.peek(1).text.lower() in TYPES
+    enum = _enum(cursor, text) if first is None else None
+    if enum is not None:
+        return enum
     word = cursor.token.text.lower()
     type_ = first.type if first else ""
     if word in TYPES and cursor.peek(1).text not in ("|", "/", "or"):
@@ -215,6 +242,8 @@ def _default(cursor: Cursor) -> str | None:
     cursor.at += 1
     if cursor.token.type == "UNIT":
         cursor.at += 1
+    if token.type == "NAME" and (cursor.accept(".") or cursor.accept_words(":", ":")):
+        cursor.at += 1
     return f"{sign}{token.text.lower()}"
 
 
@@ -222,7 +251,7 @@ def _declared(names: Sequence[str], type_: _Type, text: Sequence[Token]) -> Mean
     """Return the declarations of signals with one type."""
     if type_.values:
         lines = tuple(f"signal {name}: ({', '.join(type_.values)})" for name in names)
-        return MeantDeclaration("signal", lines, lines)
+        return MeantDeclaration("signal", lines, lines, enums=(type_.enum,) if type_.enum else ())
     ends = f" in [{', '.join(type_.ends)}]" if type_.ends else ""
     if ends or type_.type in _NO_RANGE:
         lines = tuple(f"signal {name}{f': {type_.type}' if type_.type else ''}{ends}" for name in names)
