@@ -36,6 +36,9 @@ MEANT = [
         )
     ),
     ("enum alert { a, b }", "signal alert: (a, b)"),
+    ("state alert {a, b}", "signal alert: (a, b)"),
+    ("state: {a, b}", "signal state: (a, b)"),
+    ("flag: bool", "signal flag: bool"),
     ("enum alert = {\n  a,\n  b\n}", "signal alert: (a, b)"),
     ("alert: {a, b}", "signal alert: (a, b)"),
     *(
@@ -59,6 +62,8 @@ MEANT = [
     ),
     ("signal x: int in {0, 1, 2}", "signal x: int in [0, 2]"),
     ("signal x: float 0 to 1", "signal x: number in [0, 1]"),
+    ("signal x: number >= 0 and <= 1", "signal x: number in [0, 1]"),
+    ("x: int > 0, < 10", "signal x: int in [1, 9]"),
     ("number x in [0, 1]", "signal x: number in [0, 1]"),
     ("float x in [-1.5, 1]", "signal x: number in [-1.5, 1]"),
     ("signal v: 0..10 m/s", "signal v: speed in [0 m/s, 10 m/s]"),
@@ -87,6 +92,10 @@ MEANT = [
     ("signal a, b, c: bool", ABC),
     ("bool a, b, c", ABC),
     ("signals:\n  a: bool\n  b: bool\n  c: bool", ABC),
+    ("signals {\n  a: bool\n  b: bool\n  c: bool\n}", ABC),
+    ("signals { a: bool; b: bool; bool c = false }", ABC),
+    ("signals { e: {p, q} x: 0..3 a: bool }", "signal e: (p, q)\nsignal x in [0, 3]\nsignal a: bool"),
+    ("flags { a, b, c }", ABC),
     ("signal a: bool;\nsignal b: bool;\nbool c;", ABC),
     ("signal a: bool, b: bool, c: bool", ABC),
     ("entities: a, b", "entity a, b"),
@@ -124,6 +133,7 @@ ENUMS = [
         "enum Engine { Ok, Hot }\nenum Mood { Calm, Angry }\nsignals: engine: Engine, mood: Mood",
         f"{OF_ENUM}\nsignal mood: (Calm, Angry)",
     ),
+    ("enum Engine { Ok, Hot }\nsignals { engine: Engine }", OF_ENUM),
     ("type engine = Ok | Hot", OF_ENUM),
 ]
 
@@ -188,6 +198,9 @@ def test_the_clauses_are_checked_with_the_values_of_the_enum() -> None:
         ("var hp: int = 100", "`signal hp: int in [LOW, HIGH]`"),
         ("number x", "`signal x: number in [LOW, HIGH]`"),
         ("signal x\nspec s { reach x > 3 }", "`signal x: number in [LOW, HIGH]`"),
+        ("x: number >= 0", "`signal x: number in [0, HIGH]`, with its greatest value for HIGH"),
+        ("signal hp: int > 0", "`signal hp: int in [1, HIGH]`"),
+        ("signal d: length <= 5 m", "`signal d: length in [LOW, 5 m]`, with its least value for LOW"),
         ("signal lap\nspec s { reach lap == 3 }", "`signal lap: int in [LOW, HIGH]`"),
         ("signal a", "`signal a: bool` if it is true or false"),
         ("spec { reach true }", "`spec NAME {`"),

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from typing import Final
 
 from tltlc.core.record import record
 from tltlc.grammar.lexer import END, Token
 
-MISSING_RANGE = "in [LOW, HIGH]"
-"""Stands in a help for a range that the author did not write."""
+MISSING_ENDS: Final = ("LOW", "HIGH")
+"""Stand in a help for the ends of a range that the author did not write."""
+MISSING_RANGE: Final = f"in [{', '.join(MISSING_ENDS)}]"
 
 
 @record

@@ -5,11 +5,13 @@ from __future__ import annotations
 import re
 from typing import Final
 
-from tltlc.grammar.mistakes.declaration_forms.meant import Cursor
+from tltlc.grammar.mistakes.declaration_forms.meant import MISSING_ENDS, Cursor
 
 _OPENING: Final = {"[": (")", "]"), "(": (")", "]"), "{": ("}",), "[]": ()}
 _SIGNS: Final = ("..", "...", ",", "to", "-", "–", "—", ":", ";", "and", "…")
 _PREFIXES: Final = ("in", "from", "between", "range", "ranging", "within")
+_BOUNDS: Final = {">=": 0, ">": 0, "≥": 0, "<=": 1, "<": 1, "≤": 1}
+"""Maps the sign before one end of a range to the index of this end."""
 _UNITS: Final = {
     **dict.fromkeys(("m", "cm", "km"), "length"),
     **dict.fromkeys(("s", "ms", "min", "h"), "time"),
@@ -73,6 +75,34 @@ def _least_and_greatest(cursor: Cursor) -> Range | None:
         return None
     low, high = (f"{number} {unit}".strip() for number, unit in ends)
     return _in_order(low, high, ends[0][0], ends[1][0], _UNITS.get(ends[0][1] or ends[1][1], ""))
+
+
+def read_bounds(cursor: Cursor, *, is_whole: bool) -> Range | None:
+    """Read ``>= 0``, ``< 5 m`` or ``>= 0 and <= 100``; return None, with the cursor where it was, if there is none.
+
+    An end that is not written is LOW or HIGH. Whole numbers ``> 0`` begin at 1.
+    """
+    start = cursor.at
+    ends = list(MISSING_ENDS)
+    numbers = ["-inf", "inf"]
+    types: list[str] = []
+    while (sign := cursor.token.text) in _BOUNDS:
+        cursor.at += 1
+        end, side = _end(cursor), _BOUNDS[sign]
+        if end is None or ends[side] != MISSING_ENDS[side]:
+            break
+        number, unit = end
+        if is_whole and sign in ("<", ">") and number.lstrip("-").isdecimal():
+            number = str(int(number) + (1 if sign == ">" else -1))
+        ends[side], numbers[side] = f"{number} {unit}".strip(), number
+        types.append(_UNITS.get(unit, ""))
+        cursor.accept("and", "&", "&&", ",")
+    low, high = ends
+    is_range = bool(types) and len(set(types)) == 1
+    found = _in_order(low, high, numbers[0], numbers[1], types[0]) if is_range else None
+    if found is None:
+        cursor.at = start
+    return found
 
 
 def _in_order(low: str, high: str, least: str, greatest: str, type_: str) -> Range | None:

@@ -7,8 +7,21 @@ from typing import Final
 
 from tltlc.core.record import record, replace
 from tltlc.grammar.lexer import Token
-from tltlc.grammar.mistakes.declaration_forms.meant import MISSING_RANGE, Cursor, MeantDeclaration, WholeText
-from tltlc.grammar.mistakes.declaration_forms.ranges import UNIT_OF_TYPE, Range, read_range, read_values, whole_values
+from tltlc.grammar.mistakes.declaration_forms.meant import (
+    MISSING_ENDS,
+    MISSING_RANGE,
+    Cursor,
+    MeantDeclaration,
+    WholeText,
+)
+from tltlc.grammar.mistakes.declaration_forms.ranges import (
+    UNIT_OF_TYPE,
+    Range,
+    read_bounds,
+    read_range,
+    read_values,
+    whole_values,
+)
 from tltlc.grammar.mistakes.declaration_forms.uses import used_as
 
 TYPES: Final = {
@@ -30,15 +43,15 @@ _LEADING_TYPES: Final = ("bool", "boolean", "int", "integer", "float", "double",
 SIGNAL_WORDS: Final = frozenset(
     """
     signal signals var vars variable variables input inputs sensor sensors observation obs observable flag flags prop
-    props proposition atom let val state_var event events declare
+    props proposition atom let val state state_var event events declare
     """.split()
 )
 ENTITY_WORDS: Final = frozenset("entities object objects actor actors".split())
 _TRUTHS: Final = frozenset("flag flags prop props proposition atom event events".split())
 """Words for signals that are true or false."""
 _NO_RANGE: Final = ("bool", "ratio")
-_ASSUMED: Final = 1_000_000
-"""The ends of the range with which a file is checked if the author wrote none."""
+_ASSUMED: Final = "1e6"
+"""The end of a range with which a file is checked if the author wrote none; no help takes it for one of an int."""
 _IS_TYPE: Final = (":", "=", "as", "is")
 
 
@@ -76,12 +89,16 @@ def read_signals(tokens: Sequence[Token], text: WholeText) -> MeantDeclaration |
     """
     cursor = Cursor(tokens)
     word = cursor.token.text.lower()
-    is_named = cursor.accept(*SIGNAL_WORDS)
-    if is_named and cursor.accept(":") and cursor.token.type != "NAME":
+    is_named = not _is_name(cursor) and cursor.accept(*SIGNAL_WORDS)
+    is_marked = is_named and cursor.accept(":")
+    is_block = is_named and cursor.token.text == "{" and tokens[-1].text == "}"
+    if is_block:
+        cursor = Cursor(tokens[:-1], cursor.at + 1)
+    elif is_marked and cursor.token.type != "NAME":
         return None
     signals: list[MeantDeclaration] = []
     while not cursor.is_done:
-        meant = _signals(cursor, text, word, is_named or bool(signals))
+        meant = _signals(cursor, text, word, is_named or bool(signals), is_block=is_block)
         if meant is None:
             return None
         signals.append(meant)
@@ -101,8 +118,17 @@ def read_signals(tokens: Sequence[Token], text: WholeText) -> MeantDeclaration |
     )
 
 
-def _signals(cursor: Cursor, text: WholeText, word: str, is_named: bool) -> MeantDeclaration | None:
-    """Read one or more names with one type."""
+def _is_name(cursor: Cursor) -> bool:
+    """Whether a word such as ``state`` is the name of the signal, as in ``state: {idle, alert}`` and ``flag: bool``."""
+    following, type_ = cursor.peek(1).text, cursor.peek(2)
+    is_typed = type_.type != "NAME" or type_.text.lower() in TYPES
+    return cursor.token.type == "NAME" and not cursor.token.text.endswith("s") and following == ":" and is_typed
+
+
+def _signals(
+    cursor: Cursor, text: WholeText, word: str, is_named: bool, *, is_block: bool = False
+) -> MeantDeclaration | None:
+    """Read one or more names with one type. In a block, another declaration may follow without a mark between."""
     first = _leading_type(cursor, text)
     names = _names(cursor)
     if not names or not (first is not None or is_named or cursor.token.text == ":"):
@@ -118,7 +144,8 @@ def _signals(cursor: Cursor, text: WholeText, word: str, is_named: bool) -> Mean
     if type_ is None:
         return None
     value = _default(cursor)
-    if value is None or not (cursor.is_done or cursor.token.text in (";", ",", *SIGNAL_WORDS)):
+    is_last = cursor.is_done or cursor.token.text in (";", ",", *SIGNAL_WORDS)
+    if value is None or not (is_last or (is_block and cursor.token.type == "NAME")):
         return None
     if not (type_.type or type_.ends or type_.values):
         if word == "let":
@@ -216,7 +243,7 @@ def _type(cursor: Cursor, text: WholeText, first: _Type | None, is_named: bool) 
             return _Type(values=values)
     elif cursor.token.text == ",":
         return _Type(type_)
-    ends = whole_values(cursor) or read_range(cursor)
+    ends = whole_values(cursor) or read_range(cursor) or read_bounds(cursor, is_whole=type_ == "int")
     return _with_range(type_, ends) if ends else _Type(type_)
 
 
@@ -225,9 +252,13 @@ def _with_range(type_: str, ends: Range) -> _Type | None:
     low, high, type_of_unit = ends
     if type_ in ("", "number") and type_of_unit:
         type_ = type_of_unit
-    if type_ == "int" and not all(end.lstrip("-").isdecimal() or end.endswith("inf") for end in (low, high)):
+    if type_ == "int" and not all(_is_whole_end(end) for end in (low, high)):
         return None
     return None if type_ == "bool" else _Type(type_, (low, high))
+
+
+def _is_whole_end(end: str) -> bool:
+    return end.lstrip("-").isdecimal() or end.endswith("inf") or end in MISSING_ENDS
 
 
 def _default(cursor: Cursor) -> str | None:
@@ -252,24 +283,32 @@ def _declared(names: Sequence[str], type_: _Type, text: Sequence[Token]) -> Mean
     if type_.values:
         lines = tuple(f"signal {name}: ({', '.join(type_.values)})" for name in names)
         return MeantDeclaration("signal", lines, lines, enums=(type_.enum,) if type_.enum else ())
+    if set(type_.ends).intersection(MISSING_ENDS):
+        return _with_missing_ends(names, type_.type or "number", type_.ends)
     ends = f" in [{', '.join(type_.ends)}]" if type_.ends else ""
     if ends or type_.type in _NO_RANGE:
         lines = tuple(f"signal {name}{f': {type_.type}' if type_.type else ''}{ends}" for name in names)
         return MeantDeclaration("signal", lines, lines)
     if type_.type:
-        return _without_range(names, type_.type)
+        return _with_missing_ends(names, type_.type, MISSING_ENDS)
     return _without_type(names, text)
 
 
-def _without_range(names: Sequence[str], type_: str) -> MeantDeclaration:
+def _with_missing_ends(names: Sequence[str], type_: str, ends: Sequence[str]) -> MeantDeclaration:
+    """Return the declarations of signals of which one or both ends of the range are not written."""
     unit = UNIT_OF_TYPE.get(type_, "")
-    assumed = f"in [-{_ASSUMED}{unit}, {_ASSUMED}{unit}]"
+    assumed = {"LOW": f"-{_ASSUMED}{unit}", "HIGH": f"{_ASSUMED}{unit}"}
+    read_as = ", ".join(assumed.get(end, end) for end in ends)
+    known = {"LOW": "its least value for LOW", "HIGH": "its greatest value for HIGH"}
+    missing = [words for end, words in known.items() if end in ends]
     return MeantDeclaration(
         "signal",
-        tuple(f"signal {name}: {type_} {MISSING_RANGE}" for name in names),
-        tuple(f"signal {name}: {type_} {assumed}" for name in names),
+        tuple(f"signal {name}: {type_} in [{', '.join(ends)}]" for name in names),
+        tuple(f"signal {name}: {type_} in [{read_as}]" for name in names),
         is_complete=False,
-        reason=", with its least value for LOW and its greatest for HIGH",
+        reason=", with its least value for LOW and its greatest for HIGH"
+        if len(missing) > 1
+        else f", with {missing[0]}",
     )
 
 
@@ -280,9 +319,9 @@ def _without_type(names: Sequence[str], text: Sequence[Token]) -> MeantDeclarati
         lines = tuple(f"signal {name}: bool" for name in names)
         return MeantDeclaration("signal", lines, lines)
     if uses == {"number"}:
-        return _without_range(names, "number")
+        return _with_missing_ends(names, "number", MISSING_ENDS)
     if uses == {"int"}:
-        return _without_range(names, "int")
+        return _with_missing_ends(names, "int", MISSING_ENDS)
     help_ = (
         f"write `signal {names[0]}: bool` if it is true or false, `signal {names[0]}: number {MISSING_RANGE}` "
         f"if it is a number, with its least value for LOW and its greatest for HIGH"
