@@ -201,6 +201,7 @@ def test_the_clauses_are_checked_with_the_values_of_the_enum() -> None:
         ("x: number >= 0", "`signal x: number in [0, HIGH]`, with its greatest value for HIGH"),
         ("signal hp: int > 0", "`signal hp: int in [1, HIGH]`"),
         ("signal d: length <= 5 m", "`signal d: length in [LOW, 5 m]`, with its least value for LOW"),
+        ("clock 60", "`clock 60 Hz` for 60 steps a second, `clock 60 s` for the time of one step"),
         ("signal lap\nspec s { reach lap == 3 }", "`signal lap: int in [LOW, HIGH]`"),
         ("signal a", "`signal a: bool` if it is true or false"),
         ("spec { reach true }", "`spec NAME {`"),
@@ -225,3 +226,29 @@ def test_a_comment_inside_a_declaration_is_not_lost() -> None:
     (error,) = diagnostics("enum alert {\n  a, // first\n  b\n}")
     assert error.help == "write `signal alert: (a, b)`"
     assert error.fixes == ()
+
+
+@pytest.mark.parametrize(
+    ("typed", "help_"),
+    [
+        ("signal x: float", "write `signal x: number in [LOW, HIGH]`, with its least value for LOW"),
+        ("signal lap: integer", "write `signal lap: int in [LOW, HIGH]`"),
+        ("signal v(x: entity): velocity", "write `signal v(x: entity): speed in [LOW m/s, HIGH m/s]`"),
+        ("signal x: float in [0, 1]", "did you mean `number`?"),
+        ("signal a: Bool", "did you mean `bool`?"),
+        ("signal mass: kilograms", "or a list of values: `(idle, alert)`"),
+    ],
+)
+def test_the_help_for_an_unknown_type_gives_the_exact_one(typed: str, help_: str) -> None:
+    (error,) = diagnostics(typed)
+    assert error.code == "TLT0211"
+    assert help_ in (error.help or "")
+
+
+def test_the_clauses_are_checked_with_the_types_that_are_meant() -> None:
+    text = "signal lap: integer\nsignal x: float\nsignal v: velocity\nsignal a: boolean\nspec s {\n"
+    *types, half, unit, missing = diagnostics(
+        f"{text} reach lap == 3.5\n keep x > 2\n keep v > 3\n avoid a and v > 3 m/s and y\n}}"
+    )
+    assert [error.code for error in types] == ["TLT0211"] * 4
+    assert [error.code for error in (half, unit, missing)] == ["TLT0110", "TLT0305", "TLT0201"]

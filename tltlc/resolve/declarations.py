@@ -15,11 +15,11 @@ from tltlc.resolve.constants import interval, number
 from tltlc.resolve.context import Context, SignalInfo
 from tltlc.resolve.enums import value_names
 from tltlc.resolve.options import ResolveOptions
-from tltlc.resolve.predicates import unknown_type_error
 from tltlc.resolve.problem import ResolutionError, problem
 from tltlc.resolve.quantities import quantity
 from tltlc.resolve.scope import Scope
 from tltlc.resolve.spec import Param, ValueType
+from tltlc.resolve.unknown_types import unknown_type_error
 from tltlc.resolve.values import Env, range_text
 
 
@@ -50,7 +50,7 @@ def declare(scopes: Iterable[Scope], options: ResolveOptions, context: Context) 
 def _type(declaration: SignalDecl | ParamDecl, scope: Scope) -> ValueType:
     type_ = units.value_type(declaration.type or "number")
     if type_ is None:
-        raise unknown_type_error(str(declaration.type), declaration, scope)
+        raise unknown_type_error(str(declaration.type), declaration, scope.source)
     return type_
 
 
@@ -196,7 +196,12 @@ def _clock(declaration: ClockDecl, env: Env, old: Label | None) -> Label:
     period = period_s(value.value, value.unit)
     if period is None:
         title = "a clock must be a frequency or a period above zero"
-        raise problem("TLT0314", title, source, value.span, advice="write e.g. `clock 20 Hz` or `clock 0.05 s`")
+        advice = "write e.g. `clock 20 Hz` or `clock 0.05 s`"
+        if value.unit is None and value.value > 0:
+            number = source.slice(value.span)
+            rate, period_text = f"`clock {number} Hz` for {number} steps a second", f"`clock {number} s`"
+            advice = f"write {rate}, {period_text} for the time of one step"
+        raise problem("TLT0314", title, source, value.span, advice=advice)
     if not SHORTEST_S <= period <= LONGEST_S:
         title = "the time from one step to the next must be between 1e-9 and 1e9 seconds"
         raise problem("TLT0314", title, source, value.span, advice="write e.g. `clock 20 Hz` or `clock 0.05 s`")

@@ -3,17 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Final, cast
+from typing import cast
 
 from tltlc.core.names import full_name
 from tltlc.core.record import record, replace
-from tltlc.core.source import Span
-from tltlc.diagnostics.diagnostic import Label, replacement_fix
+from tltlc.diagnostics.diagnostic import Label
 from tltlc.expression.tree import Const
 from tltlc.grammar import tree
-from tltlc.grammar.keywords import UNITS_ELSEWHERE
 from tltlc.grammar.tree import CallExpr, Expr, GroupExpr, NameExpr, Parameter, PredicateDecl
-from tltlc.grammar.typos import likely_name
 from tltlc.resolve import units
 from tltlc.resolve.arguments import match
 from tltlc.resolve.constants import interval
@@ -25,6 +22,7 @@ from tltlc.resolve.problem import ResolutionError, problem
 from tltlc.resolve.quantities import quantity
 from tltlc.resolve.scope import Binding, Scope
 from tltlc.resolve.spec import Signal, ValueType
+from tltlc.resolve.unknown_types import unknown_type_error
 from tltlc.resolve.values import Entity, Env, Quantity, ResolvedValue, Unknown, constant
 
 
@@ -155,34 +153,7 @@ def parameter_type(parameter: Parameter, binding: Binding) -> str | None:
     """
     if parameter.type is None or parameter.type in units.TYPES:
         return parameter.type
-    raise unknown_type_error(parameter.type, parameter, binding.scope)
-
-
-_TYPES_ELSEWHERE: Final = {
-    **dict.fromkeys(("float", "double", "real"), "number"),
-    "integer": "int",
-    "boolean": "bool",
-    "distance": "length",
-    "duration": "time",
-    "velocity": "speed",
-}
-"""Maps names of types in other languages to the types of this language."""
-
-
-def unknown_type_error(name: str, at: Parameter | tree.SignalDecl | tree.ParamDecl, scope: Scope) -> ResolutionError:
-    """Return the error (TLT0211) for a type that the language does not have."""
-    known = [*units.TYPES, "entity"]
-    elsewhere = units.type_of_unit(UNITS_ELSEWHERE.get(name.lower(), name)) or _TYPES_ELSEWHERE.get(name.lower())
-    suggestion = elsewhere or likely_name(name, known)
-    advice = f"did you mean `{suggestion}`?" if suggestion else f"the types are {', '.join(known)}"
-    if suggestion is None and isinstance(at, tree.SignalDecl):
-        advice += ", or a list of values: `(idle, alert)`"
-    if name.lower() == "enum" and isinstance(at, tree.SignalDecl):
-        suggestion, advice = None, f"list the values: `signal {at.name}: (idle, alert)`"
-    start = scope.source.text.find(name, at.name_span.end, at.span.end)
-    span = Span(start, start + len(name)) if start >= 0 else at.span
-    fixes = (replacement_fix(scope.source, span, suggestion),) if suggestion and start >= 0 else ()
-    return problem("TLT0211", f"there is no type `{name}`", scope.source, span, advice=advice, fixes=fixes)
+    raise unknown_type_error(parameter.type, parameter, binding.scope.source)
 
 
 def _symbolic_value(parameter: Parameter, binding: Binding, env: Env) -> ResolvedValue:

@@ -24,6 +24,7 @@ from tltlc.resolve.scope import Scope, build_scopes
 from tltlc.resolve.spec import ResolvedFile, Spec, Vocabulary
 from tltlc.resolve.spec_tests import resolve_test
 from tltlc.resolve.specs import resolve_spec, vocabulary
+from tltlc.resolve.unknown_types import with_meant_types
 from tltlc.resolve.values import Env
 
 FormulaOf = Callable[[Expr], "Formula | None"]
@@ -146,6 +147,7 @@ def _declare_names(
     ``exclusive``, and all loaded modules. The context of the environment has the diagnostics.
     """
     context = Context(unfolded=options.unfolded)
+    module = with_meant_types(module, context.log)
     modules = load(module, options, context.log)
     scopes = build_scopes(modules, context.log)
     declare(scopes, options, context)
