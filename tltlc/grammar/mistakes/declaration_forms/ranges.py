@@ -135,6 +135,17 @@ def _unit(cursor: Cursor) -> str:
     return ""
 
 
+def read_unit_as_type(cursor: Cursor) -> tuple[str, str]:
+    """Read the unit that stands where a type should, as in ``signal speed: m/s``; return its type and the unit.
+
+    Both are empty if there is none; a list of values may begin with a name such as ``m``.
+    """
+    start, unit = cursor.at, _unit(cursor)
+    if cursor.token.text in ("|", ",", "/", "or"):
+        cursor.at, unit = start, ""
+    return _UNITS.get(unit, ""), unit
+
+
 def _separator(cursor: Cursor) -> bool:
     """Read what stands between the ends of a range; return whether it is there."""
     dots = 0

@@ -19,6 +19,7 @@ from tltlc.grammar.mistakes.declaration_forms.ranges import (
     Range,
     read_bounds,
     read_range,
+    read_unit_as_type,
     read_values,
     whole_values,
 )
@@ -237,6 +238,9 @@ def _type(cursor: Cursor, text: WholeText, first: _Type | None, is_named: bool) 
         if type_ and type_ != TYPES[word]:
             return None
         type_ = TYPES[word]
+    unit = UNIT_OF_TYPE.get(type_, "").strip()
+    if not type_ and is_typed and not is_value:
+        type_, unit = read_unit_as_type(cursor)
     if not type_:
         values = read_values(cursor)
         if values:
@@ -244,16 +248,18 @@ def _type(cursor: Cursor, text: WholeText, first: _Type | None, is_named: bool) 
     elif cursor.token.text == ",":
         return _Type(type_)
     ends = whole_values(cursor) or read_range(cursor) or read_bounds(cursor, is_whole=type_ == "int")
-    return _with_range(type_, ends) if ends else _Type(type_)
+    return _with_range(type_, ends, unit) if ends else _Type(type_)
 
 
-def _with_range(type_: str, ends: Range) -> _Type | None:
-    """Return a type with a range, whose unit may say more about the type."""
+def _with_range(type_: str, ends: Range, unit: str) -> _Type | None:
+    """Return a type with a range, whose unit may say more about the type; ends without a unit get ``unit``."""
     low, high, type_of_unit = ends
     if type_ in ("", "number") and type_of_unit:
         type_ = type_of_unit
     if type_ == "int" and not all(_is_whole_end(end) for end in (low, high)):
         return None
+    if unit and not type_of_unit:
+        low, high = (end if end.endswith("inf") or end in MISSING_ENDS else f"{end} {unit}" for end in (low, high))
     return None if type_ == "bool" else _Type(type_, (low, high))
 
 
@@ -299,11 +305,12 @@ def _with_missing_ends(names: Sequence[str], type_: str, ends: Sequence[str]) ->
     unit = UNIT_OF_TYPE.get(type_, "")
     assumed = {"LOW": f"-{_ASSUMED}{unit}", "HIGH": f"{_ASSUMED}{unit}"}
     read_as = ", ".join(assumed.get(end, end) for end in ends)
+    written = ", ".join(f"{end}{unit}" if end in MISSING_ENDS else end for end in ends)
     known = {"LOW": "its least value for LOW", "HIGH": "its greatest value for HIGH"}
     missing = [words for end, words in known.items() if end in ends]
     return MeantDeclaration(
         "signal",
-        tuple(f"signal {name}: {type_} in [{', '.join(ends)}]" for name in names),
+        tuple(f"signal {name}: {type_} in [{written}]" for name in names),
         tuple(f"signal {name}: {type_} in [{read_as}]" for name in names),
         is_complete=False,
         reason=", with its least value for LOW and its greatest for HIGH"
