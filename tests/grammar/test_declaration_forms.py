@@ -137,7 +137,12 @@ ENUMS = [
         f"{OF_ENUM}\nsignal mood: (Calm, Angry)",
     ),
     ("enum Engine { Ok, Hot }\nsignals { engine: Engine }", OF_ENUM),
+    (
+        "enum Engine { Ok, Hot }\nEngine engine\nspec s { reach engine is Engine::Hot avoid engine is Engine.Ok }",
+        f"{OF_ENUM}\nspec s {{ reach engine is Hot avoid engine is Ok }}",
+    ),
     ("type engine = Ok | Hot", OF_ENUM),
+    ("enum class engine { Ok, Hot }", OF_ENUM),
 ]
 
 

@@ -36,7 +36,7 @@ def recover(source: SourceFile, lexed: Tokens) -> tuple[tuple[tree.Declaration, 
     pieces = list(declarations(source, lexed.tokens[:-1]))
     reader = _Reader(source, lexed, NamedEnums(pieces, lexed.tokens))
     for piece in pieces:
-        reader.read_declaration(piece)
+        reader.read_declaration(reader.enums.with_short_values(piece))
         if len(reader.diagnostics) >= MAX_ERRORS:
             break
     return tuple(reader.declarations), tuple(reader.diagnostics)
@@ -50,7 +50,7 @@ class _Reader:
         self.diagnostics: list[Diagnostic] = []
         self._source = source
         self._docs = lexed.docs
-        self._enums = enums
+        self.enums = enums
 
     def read_declaration(self, piece: list[Token]) -> None:
         """Parse the tokens of one declaration, and add the declaration and its errors to the results.
@@ -87,7 +87,7 @@ class _Reader:
         result = self._attempt("declaration", piece)
         if not isinstance(result, lalr.UnexpectedTokenError):
             return [result]
-        meant = meant_declaration(piece, self._enums.text)
+        meant = meant_declaration(piece, self.enums.text)
         if meant is None:
             if not is_refused:
                 self._refuse(piece, "declaration", result)
@@ -105,13 +105,13 @@ class _Reader:
 
         The enums and their signals get one error together, at the first enum.
         """
-        enums = self._enums.starting_at(piece)
+        enums = self.enums.starting_at(piece)
         if enums:
-            self.diagnostics.append(enum_error(self._source, enums))
-        signals = self._enums.signals_of(piece)
+            self.diagnostics.append(enum_error(self._source, enums, self.enums.short_values(enums)))
+        signals = self.enums.signals_of(piece)
         if signals:
             self.declarations += self._as_meant(piece, signals)
-        return signals is not None or self._enums.declares(piece)
+        return signals is not None or self.enums.declares(piece)
 
     def _read_block(self, piece: list[Token], kind: str) -> tree.Declaration | None:
         """Parse a spec or a test in braces: its head, then each line of its body separately.

@@ -206,6 +206,7 @@ def _leading_type(cursor: Cursor, text: WholeText) -> _Type | None:
     if word not in _LEADING_TYPES or following.type != "NAME" or following.text.lower() in (*_IS_TYPE, "in", "from"):
         return None
     cursor.at += 1
+    cursor.at += word == "enum" and cursor.token.text in ("class", "struct") and cursor.peek(1).type == "NAME"
     return _Type("enum") if word in ENUM_WORDS else _Type(TYPES[word])
 
 
