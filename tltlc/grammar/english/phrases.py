@@ -39,7 +39,6 @@ PHRASES: Final[Mapping[str, str]] = {
     "may": "can|may|can only|may only|is allowed|allowed|can happen|can be|may be|is possible|may happen|"
     "happens|must only",
     "allowed": "allowed|permitted|ever|at all|at any time|at any point|happens|happen",
-    "again": "again|a second time|more than once|twice",
     "always": "always|at all times|all the time|the whole time|throughout|at every step|on every step|every frame|"
     "on every frame|forever|for ever|from then on|for good|for the rest|in every frame|at every frame",
     "eventually": "eventually|at some point|sooner or later|later|finally|at some time|afterwards|in the end",
