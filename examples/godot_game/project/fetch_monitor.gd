@@ -68,11 +68,11 @@ const LABELS: Array = [
 	"G(!caught & !fallen)",
 ]
 const LABELS_ENGLISH: Array = [
-	"Reach at(key, 0.8), then at(door, 1.2), then at(ferry, 1.2), then at(beacon, 1); and avoid caught throughout, and avoid fallen throughout.",
-	"Reach at(door, 1.2), then at(ferry, 1.2), then at(beacon, 1); and avoid caught throughout, and avoid fallen throughout.",
+	"Reach at(key, 0.8), then at(door, 1.2), then at(ferry, 1.2), then at(beacon, 1); avoid caught throughout; and avoid fallen throughout.",
+	"Reach at(door, 1.2), then at(ferry, 1.2), then at(beacon, 1); avoid caught throughout; and avoid fallen throughout.",
 	"The spec is violated.",
-	"Reach at(ferry, 1.2), then at(beacon, 1); and avoid caught throughout, and avoid fallen throughout.",
-	"Reach at(beacon, 1); and avoid caught throughout, and avoid fallen throughout.",
+	"Reach at(ferry, 1.2), then at(beacon, 1); avoid caught throughout; and avoid fallen throughout.",
+	"Reach at(beacon, 1), avoid caught throughout, and avoid fallen throughout.",
 	"Avoid caught throughout, and avoid fallen throughout.",
 ]
 const VERDICTS: Array = [
