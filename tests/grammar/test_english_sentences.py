@@ -18,6 +18,7 @@ from tltlc.grammar.mistakes.sentences.calls import with_own_calls
 from tltlc.grammar.mistakes.sentences.validity import is_valid
 from tltlc.grammar.mistakes.sentences.vocabulary import ENGLISH
 from tltlc.grammar.mistakes.sentences.words import words_of
+from tltlc.monitor import Monitor
 
 HEAD = """\
 clock 10 Hz
@@ -27,6 +28,7 @@ signal boss_dead: bool
 signal coins: int in [0, 99]
 signal health in [0, 100]
 signal phase: (menu, shift, results)
+signal state: (Idle, Dead)
 """
 
 ONE_READING = {
@@ -49,6 +51,16 @@ ONE_READING = {
         "keep begins fire implies (always for 4 steps fire) and weak_next after 4 steps not fire"
     ],
     "keep spray implies fire within 3 s before": ["keep spray implies once within 3 s fire"],
+    "phase changes only when fire": [
+        "keep ends (phase is menu) or ends (phase is shift) or ends (phase is results) implies fire"
+    ],
+    "when fire, coins > coins at start": ["keep fire implies coins > initial(coins)"],
+    "whenever fire && spray, boss_dead within 2 frames unless state == Dead": [
+        "keep within 2 steps of fire and spray, boss_dead or state is Dead"
+    ],
+    "avoid state becomes Dead unless prev(state) == Idle": [
+        "keep begins (state is Dead) implies previously (state is Idle)"
+    ],
     "reach (fire then spray) 2 times": ["reach fire then spray then fire then spray"],
     "phase leaves shift only if coins > 3": ["keep ends (phase is shift) implies coins > 3"],
     "keep 9 <= coins < 17": ["keep 9 <= coins and coins < 17"],
@@ -61,6 +73,10 @@ ONE_READING = {
 }
 
 SEVERAL_READINGS = {
+    "whenever fire becomes false then not spray within 5 s": [
+        ("keep ends fire implies not eventually within 5 s spray", "if it must hold at no step of that time"),
+        ("keep within 5 s of ends fire, not spray", "if one step is enough"),
+    ],
     "once fire keep fire until spray": [
         ("keep fire implies (fire until spray)", "if `spray` must come"),
         ("keep fire implies (fire weak_until spray)", "if it need not"),
@@ -80,7 +96,6 @@ NO_READING = (
     "if fire then spray until boss_dead",
     "keep fire or spray unless boss_dead and fire",
     "reach not fire within 5 s",
-    "whenever fire then not spray within 5 s",
     "fire upside down spray",
     "avoid",
 )
@@ -88,6 +103,7 @@ NO_READING = (
 UNSAYABLE = {
     "when fire then coins == coins at last spray": "no clause can say what `coins` was at `spray`",
     "when fire ends then coins >= (coins when fire started) + 5": "no clause can say what `coins` was at `fire`",
+    "when fire then coins > coins when phase became shift": "what `coins` was at `phase becomes shift`",
     "avoid more than 2 times fire within 5 s": "no clause can say how often",
     "fire for at most 4 s in total": "no clause can say for how long `fire` holds in total",
 }
@@ -148,6 +164,31 @@ def test_one_fix_mends_all_words_of_a_clause_that_can_be_parsed(typed: str, mean
     text, left = fix(spec(typed).text)
     assert not left
     assert meant in text
+
+
+@pytest.mark.parametrize(
+    ("typed", "note"),
+    [
+        ("fire at most 3 times", "`times(fire)` counts how often `fire` begins: steps in a row count once"),
+        (
+            "avoid fire and spray for more than 0.3 s",
+            "the time is 0 s at the first step, so `time_holding(fire and spray) > 0.3 s` needs 5 steps in a row",
+        ),
+        ("when fire then spray until boss_dead", "write `weak_until` for `until` if play may end before `boss_dead`"),
+    ],
+)
+def test_a_help_says_what_its_clauses_count(typed: str, note: str) -> None:
+    (error,) = errors(spec(typed))
+    assert error.fixes
+    assert (error.help or "").endswith(f"; {note}")
+
+
+def test_so_many_steps_in_a_row_take_the_time_that_a_note_says() -> None:
+    (fspa,) = tltlc.compile_text(f"{HEAD}spec s {{ avoid time_holding(fire) > 0.3 s }}")
+    monitor = Monitor(fspa)
+    names = {"spray": False, "boss_dead": False, "coins": 0, "health": 1, "phase": 0, "state": 0}
+    verdicts = [monitor.step({"fire": True, **names}).verdict for _ in range(5)]
+    assert [verdict == "violated" for verdict in verdicts] == [False, False, False, False, True]
 
 
 def test_an_error_whose_own_fix_is_enough_keeps_it() -> None:

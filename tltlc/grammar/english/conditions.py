@@ -144,7 +144,6 @@ class Conditions:
 
     def __init__(self, names: DeclaredNames) -> None:
         self._step_s = names.step_s
-        self._names = names.names
         self.limits: list[str] = []
         """Why no clause can say a sentence."""
 
@@ -173,6 +172,12 @@ class Conditions:
             f"no clause can say what `{term.text}` was at `{event.text}`: let the game supply that number as a signal, "
             f"and compare `{term.text}` with it"
         )
+
+    def value_when(self, term: Term, name: Term, value: Term) -> None:
+        self.value_at(term, Term("BOOL", f"{name.text} becomes {value.text}"))
+
+    def initial(self, term: Term) -> Number:
+        return Number(f"initial({term.text})", term)
 
     def in_brackets(self, number: Number) -> Number:
         return Number(f"({number.text})", number.term)
@@ -233,12 +238,6 @@ class Conditions:
     def historically(self, state: State) -> State:
         return State(f"historically {state.at(ATOM)}")
 
-    def value_alone(self, value: Term) -> State | None:
-        names = [name for name, known in self._names.items() if known is value.declared]
-        return (
-            State(f"{names[0]} is {value.text}", ATOM, f"{names[0]} is not {value.text}") if len(names) == 1 else None
-        )
-
     def enum(self, name: Term, *values: Term) -> State | None:
         assert name.declared is not None
         if not all(value.text in name.declared.values for value in values):
@@ -265,6 +264,16 @@ class Conditions:
     def not_enum_before(self, name: Term, value: Term) -> State | None:
         state = self.enum(name, value)
         return None if state is None else State(f"not previously ({state.text})")
+
+    def enum_varies(self, name: Term, before: Term | None = None) -> State | None:
+        if name.declared is None or (before is not None and before.text != name.text):
+            return None
+        ends = [f"ends ({name.text} is {value})" for value in name.declared.values]
+        return State(" or ".join(ends), OR)
+
+    def enum_stays(self, name: Term, before: Term | None = None) -> State | None:
+        state = self.enum_varies(name, before)
+        return None if state is None else state.negated()
 
     def enum_changes(self, name: Term, start: Term, end: Term) -> State | None:
         before, after = self.enum_before(name, start), self.enum(name, end)

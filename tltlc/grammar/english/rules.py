@@ -290,9 +290,13 @@ class Rules(Conditions):
     def now(self, state: State) -> Asked:
         return Asked(Answer("now", state))
 
-    def within(self, state: State, duration: Duration) -> Asked | None:
+    def within(self, state: State, duration: Duration) -> Asked | list[Asked]:
         if _is_negative(state):
-            return None  # it may have to hold at one step, or at all of them
+            never = State(f"not eventually within {duration.text} {state.negated().at(ATOM)}")
+            return [
+                Asked(Answer("now", never), "if it must hold at no step of that time", is_formula=True),
+                Asked(Answer("within", state, duration.text), "if one step is enough"),
+            ]
         return Asked(Answer("within", state, duration.text))
 
     def within_before(self, state: State, duration: Duration) -> Asked:
@@ -304,7 +308,7 @@ class Rules(Conditions):
             return None
         return Asked(Answer("within", joined([state, exception], "or"), duration.text))
 
-    def within_first(self, duration: Duration, state: State) -> Asked | None:
+    def within_first(self, duration: Duration, state: State) -> Asked | list[Asked]:
         return self.within(state, duration)
 
     def reach_later(self, state: State) -> Asked:

@@ -65,8 +65,8 @@ def _terms(words: Words, vocabulary: Mapping[str, str]) -> Iterator[Term | None]
                 yield Term(_SIGNS[word.type], word.text)
         elif number := words.number(start):
             yield Term("NUMBER", number)
-        elif found := [name for name, known in words.names.names.items() if word.text in known.values]:
-            yield Term("VALUE", word.text, words.names.names[found[0]] if len(found) == 1 else None)
+        elif any(words[start:at].text in known.values for known in words.names.names.values()):
+            yield Term("VALUE", words[start:at].text)
         elif start and words.number(start - 1) and (unit := _unit(word.text)) and word.text not in words.names.names:
             yield Term("TIME_UNIT" if unit in _TIME_UNITS else "UNIT", unit)
         elif word.type == "UNIT" or (word.text == "%" and start):

@@ -10,6 +10,7 @@ from tltlc.core.source import SourceFile, Span
 from tltlc.diagnostics.diagnostic import Diagnostic, Edit, Fix, replacement_fix
 from tltlc.grammar import lalr
 from tltlc.grammar.builder import Builder
+from tltlc.grammar.english.notes import notes
 from tltlc.grammar.english.readings import sentence
 from tltlc.grammar.english.rules import Reading
 from tltlc.grammar.lexer import END, Token, tokenize
@@ -31,6 +32,7 @@ from tltlc.grammar.mistakes.sentences.two_readings import both_readings
 from tltlc.grammar.mistakes.sentences.validity import is_valid
 from tltlc.grammar.mistakes.sentences.vocabulary import ENGLISH, FILLERS, NEVER, PROHIBITIONS, SUBJECTS
 from tltlc.grammar.mistakes.sentences.words import Words, phrases, words_of
+from tltlc.grammar.past_words import SYNONYMS
 from tltlc.grammar.tables import load
 
 _JOINTS: Final = phrases("and", ",", ", and", "but", ", but", ";", ".", "without", "while")
@@ -55,19 +57,33 @@ ReadAgain = Callable[[SourceFile, Sequence[Token], lalr.UnexpectedTokenError, st
 def sentence_help(
     failure: ParseFailure, diagnostic: Diagnostic, *, is_explained: bool, read_again: ReadAgain | None
 ) -> Diagnostic:
+    """Return the error for a clause with the fix that its English sentence suggests, and what to know of that fix."""
+    helped = _with_reading(failure, diagnostic, is_explained=is_explained, read_again=read_again)
+    piece = span_of(failure.tokens[:-1]) if len(failure.tokens) > 1 else None
+    edits = helped.fixes[0].edits if helped.fixes else ()
+    if piece is None or len(edits) != 1 or edits[0].span != piece or len(failure.tokens) > _LONGEST:
+        return helped
+    known = notes(edits[0].text, declared_names(failure.source), failure.source.slice(piece))
+    return replace(helped, help="; ".join((*([helped.help] if helped.help else []), *known))) if known else helped
+
+
+def _with_reading(
+    failure: ParseFailure, diagnostic: Diagnostic, *, is_explained: bool, read_again: ReadAgain | None
+) -> Diagnostic:
     """Return the error for a clause with the fix that its English sentence suggests, if it has one reading.
 
     A sentence with several readings gets them in the help, and no fix. ``is_explained`` says that the error is
     about a mistake in a clause of the language.
     """
     known = _by_patterns(failure, diagnostic, is_explained=is_explained, read_again=read_again)
-    if failure.start != "clause" or failure.tokens[-1].type != END or len(failure.tokens) > _LONGEST:
+    if failure.start != "clause" or failure.tokens[-1].type != END or not 2 < len(failure.tokens) <= _LONGEST:
         return known
     if not (failure.tokens[0].text in _KEYWORDS or is_own_line(failure)):
         return known
     if known.code == "TLT0110" and not known.fixes:
         return known  # the help says what to declare
-    if (known.fixes and _is_mended(failure, known.fixes[0])) or _has_readings(failure, known.help or ""):
+    is_mended = bool(known.fixes) and _is_mended(failure, known.fixes[0])
+    if (is_mended and not _is_foreign(known.fixes[0], failure)) or _has_readings(failure, known.help or ""):
         return known
     words = _words(failure)
     if not words or words.word(0) == "require" or (is_imperative(words) and words.word(0) not in _KEYWORDS):
@@ -75,18 +91,29 @@ def sentence_help(
     found = sentence(words)
     if not found.readings and not found.limit:
         found = sentence(with_names(words))
+    if is_mended and len(found.readings) != 1:
+        return known
     if found.readings and " ".join(found.readings[0].clauses) != words.text:
         return _with_readings(failure, known, found.readings)
     return replace(known, help=found.limit, fixes=()) if found.limit and not found.readings else known
 
 
-def _has_readings(failure: ParseFailure, help_: str) -> bool:
-    """Whether a help names two forms in the words of the file."""
+def _is_foreign(fix: Fix, failure: ParseFailure) -> bool:
+    """Whether a fix has words of other languages, at which the next error would be: `==` of an enum, `prev(x)`."""
     names = declared_names(failure.source).names
-    quoted = [
-        {token.text for token in tokenize(text).tokens if token.type == "NAME"} for text in help_.split("`")[1::2]
-    ]
-    return sum(bool(used) and used <= names.keys() for used in quoted) > 1
+    tokens = [token for edit in fix.edits for token in tokenize(edit.text).tokens]
+    return any(
+        token.type in ("EQUALS", "UNEQUAL") or (token.text in SYNONYMS and token.text not in names) for token in tokens
+    )
+
+
+def _has_readings(failure: ParseFailure, help_: str) -> bool:
+    """Whether a help names two forms in the words of the file; clauses among them can be parsed."""
+    names = declared_names(failure.source).names
+    texts = {text for text in help_.split("`")[1::2] if not text.isidentifier()}
+    texts = {text for text in texts if text.split(" ")[0] not in _KEYWORDS or is_valid((text,))}
+    used = [{token.text for token in tokenize(text).tokens if token.type == "NAME"} for text in texts]
+    return sum(bool(known) and known <= names.keys() for known in used) > 1
 
 
 def _by_patterns(

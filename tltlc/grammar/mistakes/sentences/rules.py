@@ -226,6 +226,9 @@ def _subject(words: Words) -> State | None:
 
 def _only_after(left: Words, right: State, phrase: tuple[str, ...]) -> Clauses | None:
     state = _subject(left)
+    if state is not None and right.text.startswith("time_holding("):
+        begun = state.text if state.text.startswith("begins ") else f"begins {state.at(ATOM)}"
+        return (f"keep {begun} implies {right.at(OR)}",)  # `once` would forget when that was
     return None if state is None else (f"keep {state.at(OR)} implies once {right.at(ATOM)}",)
 
 
