@@ -61,6 +61,27 @@ ONE_READING = {
     "avoid state becomes Dead unless prev(state) == Idle": [
         "keep begins (state is Dead) implies previously (state is Idle)"
     ],
+    "reach any of fire, not spray within 3 s": ["require eventually within 3 s (fire or not spray)"],
+    "avoid any of fire, spray, boss_dead": ["avoid (fire or spray or boss_dead)"],
+    "keep exactly one of fire, spray": ["keep (fire and not spray) or (not fire and spray)"],
+    "keep at most one of fire, spray": ["keep not (fire and spray)"],
+    "keep none of fire and spray": ["keep (not fire and not spray)"],
+    "when health falls below 20 then fire starts": ["keep begins (health < 20) implies begins fire"],
+    "when health falls below 20 then fire on the next step": ["keep begins (health < 20) implies weak_next fire"],
+    "when health falls below 20 then fire until spray": ["keep begins (health < 20) implies (fire until spray)"],
+    "keep coins increases by at most 3": ["keep coins <= previous(coins) + 3"],
+    "when phase becomes menu or shift then fire": [
+        "keep begins (phase is menu) or begins (phase is shift) implies fire"
+    ],
+    "keep phase is not menu or shift": ["keep not (phase is menu or phase is shift)"],
+    "when fire then spray turns off": ["keep fire implies not spray"],
+    "when fire then spray starts for 3 s": ["keep fire implies always for 3 s spray"],
+    "when fire then spray for exactly 3 steps": [
+        "keep begins fire implies (always for 3 steps spray) and weak_next after 3 steps not spray"
+    ],
+    "fire only if spray since fire": ["keep fire implies previously (not fire since spray)"],
+    "when fire then no spray within 3 s": ["keep fire implies not eventually within 3 s spray"],
+    "if fire then spray": ["keep fire implies spray"],
     "reach (fire then spray) 2 times": ["reach fire then spray then fire then spray"],
     "phase leaves shift only if coins > 3": ["keep ends (phase is shift) implies coins > 3"],
     "keep 9 <= coins < 17": ["keep 9 <= coins and coins < 17"],
@@ -73,6 +94,10 @@ ONE_READING = {
 }
 
 SEVERAL_READINGS = {
+    "fire only if spray since boss_dead": [
+        ("keep fire implies (spray since boss_dead)", ""),
+        ("keep fire implies (not boss_dead since spray)", ""),
+    ],
     "whenever fire becomes false then not spray within 5 s": [
         ("keep ends fire implies not eventually within 5 s spray", "if it must hold at no step of that time"),
         ("keep within 5 s of ends fire, not spray", "if one step is enough"),
@@ -98,6 +123,14 @@ NO_READING = (
     "reach not fire within 5 s",
     "fire upside down spray",
     "avoid",
+    "avoid fire at most 3 times",
+    "avoid coins increases by less than 3",
+    "when coins increases by at most 3 then fire",
+    "keep coins decreases",
+    "reach fire for at most 3 s",
+    "when fire then spray at most 3 s",
+    "each spray lasts exactly 3 s",
+    "reach fire when coins at least 3",
 )
 
 UNSAYABLE = {

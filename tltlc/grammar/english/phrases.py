@@ -41,7 +41,7 @@ PHRASES: Final[Mapping[str, str]] = {
     "allowed": "allowed|permitted|ever|at all|at any time|at any point|happens|happen",
     "always": "always|at all times|all the time|the whole time|throughout|at every step|on every step|every frame|"
     "on every frame|forever|for ever|from then on|for good|for the rest|in every frame|at every frame",
-    "eventually": "eventually|at some point|sooner or later|later|finally|at some time|afterwards|in the end",
+    "eventually": "eventually|at some point|sooner or later|later|finally|at some time|afterwards",
     "also": "also|immediately|instantly|right away|at once|too|as well",
     "next_step": "on the next step|at the next step|in the next step|next step|one step later|on next step|"
     "in next step|at next step|the step after|immediately after",
@@ -50,7 +50,7 @@ PHRASES: Final[Mapping[str, str]] = {
     "each": "each|every|any",
     "for": "for|for the next|for a full|for a total of|for next|for at least|at least for|for the following",
     "within": "within|in|by|in under|in less than|in at most|in no more than|no later than|within at most|inside|"
-    "in the next|within the next|in next|within next|at most|not later than|under",
+    "in the next|within the next|in next|within next|not later than|under",
     "first": "in the first|within the first|during the first|in first|within first|during first|for the first|"
     "for first",
     "at_most_for": "for at most|for no more than|for no longer than|no longer than|at most for|not longer than|"
@@ -64,7 +64,7 @@ PHRASES: Final[Mapping[str, str]] = {
     "then": "then|and then|and after that|and finally|, then|, and then",
     "at_once": "at the same time|simultaneously|together|at the same step|at same time|at same step|"
     "on the same frame",
-    "at_end": "at the end|in the end|at the last step|on the last step|at end|in end|at last step|on last step",
+    "at_end": "at the end|at the last step|on the last step|at end|at last step|on last step",
     "at_start": "at the start|at the beginning|on the first step|at the first step|initially|at start|at beginning|"
     "on first step|at first step|in the beginning",
     "times": "times|time|x",
@@ -75,12 +75,12 @@ PHRASES: Final[Mapping[str, str]] = {
     "happens to be|stays on|is still|still",
     "is": "is|equals|is equal to|equal to|is exactly|has|at|in|on|stays|remains|stays at|remains at|is at|is in|"
     "is on|"
-    "has been|be|was|stays in",
+    "be|was|stays in",
     "is_not": "is not|isn't|not|not in|not at|is not in|is not at|does not equal|differs from|is other than",
     "earlier": "before|earlier|ago|beforehand|before that",
     "in_total": "in total|total|altogether|overall|in all|in sum",
     "falls_below": "falls below|drops below|goes below|drops under|falls under",
-    "rises_above": "rises above|goes above|goes over|exceeds",
+    "rises_above": "rises above|goes above|goes over",
     "is_never": "is never|never",
     "when_it": "at start of|at beginning of|at end of|at last|"
     "at|when|on|from|as of|since|during|at time of|at moment of|before",
@@ -89,7 +89,7 @@ PHRASES: Final[Mapping[str, str]] = {
     "becomes": "becomes|become|turns|turn|changes to|change to|turns to|turns into|goes to|go to|switches to|"
     "switch to|"
     "enters|enter|is set to|gets|moves to|changes into|reaches|starts being|turned|became",
-    "leaves": "leaves|leave|stops being|exits|is left|is no longer",
+    "leaves": "leaves|leave|stops being|exits|is left",
     "begins": "begins|begin|starts|start|started|begun|triggers|is triggered|goes up|turns on|happens|appears|"
     "turns true",
     "begins_first": "begins|start of|beginning of|begin of|onset of",
@@ -105,11 +105,8 @@ PHRASES: Final[Mapping[str, str]] = {
     "at_least": "never drops below|never falls below|never goes below|doesn't drop below|does not drop below|at least|"
     "no less than|not less than|no fewer than|minimum|min|minimum of|not below|"
     "greater than or equal to|more than or equal to",
-    "more": "more than|greater than|above|over|exceeds|higher than|longer than|goes above|rises above|goes over|"
-    "go above|"
-    "rise above|exceed|bigger than|larger than",
-    "less": "less than|fewer than|below|under|lower than|shorter than|drops below|falls below|goes below|drops under|"
-    "falls under|drop below|fall below|go below|drop under|fall under|smaller than",
+    "more": "more than|greater than|above|over|exceeds|higher than|longer than|exceed|bigger than|larger than",
+    "less": "less than|fewer than|below|under|lower than|shorter than|smaller than",
     "falls": "decreases|decrease|drops|drop|falls|fall|shrinks|shrink|goes down|go down|is reduced|gets lower|"
     "is lowered|"
     "goes lower|is decreased|sinks|declines",

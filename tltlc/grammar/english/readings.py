@@ -8,7 +8,7 @@ from itertools import islice, product
 from typing import TYPE_CHECKING, Any, Final
 
 from tltlc.core.record import record
-from tltlc.grammar.english.conditions import Crossing
+from tltlc.grammar.english.events import Crossing
 from tltlc.grammar.english.phrases import grammar_text
 from tltlc.grammar.english.rules import Reading, Rules
 from tltlc.grammar.english.terminals import terms
@@ -17,6 +17,8 @@ from tltlc.grammar.mistakes.sentences.words import Words
 if TYPE_CHECKING:
     from lark import Lark
 
+_MOST_READINGS: Final = 3
+"""The most readings that a help names."""
 _MOST: Final = 64
 """The most ways in which the parts of one phrase are put together."""
 
@@ -61,6 +63,8 @@ def _sentence(words: Words) -> Sentence:
     rules = Rules(words.names)
     for reading in _values(tree.children[0], rules):
         unique.setdefault(reading.clauses, reading)
+    if len(unique) > _MOST_READINGS:
+        return Sentence()
     return Sentence(tuple(unique.values()), next(iter(rules.limits), ""))
 
 

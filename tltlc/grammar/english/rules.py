@@ -5,17 +5,9 @@ from __future__ import annotations
 from typing import Final, Literal
 
 from tltlc.core.record import record, replace
-from tltlc.grammar.english.conditions import (
-    Change,
-    Conditions,
-    Counted,
-    Crossing,
-    Duration,
-    Event,
-    Held,
-    Number,
-    as_state,
-)
+from tltlc.grammar.english.answers import MOST_STEPS, Answers, Asked, is_negative, lasting_formula
+from tltlc.grammar.english.events import Counted, Crossing, Event, Held, as_state
+from tltlc.grammar.english.quantities import Change, Duration, Number
 from tltlc.grammar.english.terminals import Term
 from tltlc.grammar.mistakes.sentences.answers import Answer
 from tltlc.grammar.mistakes.sentences.rules import answered
@@ -34,18 +26,6 @@ class Reading:
 
 
 @record
-class Asked:
-    """What a rule asks for after its condition, and when the words mean that.
-
-    ``is_formula`` says that the answer is a formula about later steps, which counts from the step of the condition.
-    """
-
-    answer: Answer
-    condition: str = ""
-    is_formula: bool = False
-
-
-@record
 class Goals:
     """Goals one after the other."""
 
@@ -55,13 +35,11 @@ class Goals:
 _LASTING: Final = ("while", "as long as")
 _MOST_GOALS: Final = 8
 """The most goals that repeated goals are written out to."""
-_MOST_STEPS: Final = 8
-"""The most steps after which a condition must hold: a monitor has up to two to the power of them states."""
 
 _Found = Reading | list[Reading] | None
 
 
-class Rules(Conditions):
+class Rules(Answers):
     """The meanings of the rules of the grammar."""
 
     def both_sentences(self, first: Reading, second: Reading) -> Reading | None:
@@ -78,7 +56,7 @@ class Rules(Conditions):
 
     def avoid(self, event: Event) -> _Found:
         if isinstance(event, Counted):
-            return _limited(event, NEGATED_SIGN.get(event.sign or ">=", ""))
+            return None if event.sign in ("<", "<=") else _limited(event, NEGATED_SIGN.get(event.sign or ">=", ""))
         if isinstance(event, Held):
             return _never_held(event)
         if isinstance(event, Crossing):
@@ -123,7 +101,16 @@ class Rules(Conditions):
     def avoid_first(self, state: State, duration: Duration) -> _Found:
         return Reading((f"require always for {duration.text} {state.negated().at(ATOM)}",))
 
+    def keep_change(self, term: Term, change: Change, sign: str, step: Number) -> _Found:
+        mirrored = {"<": ">", "<=": ">="}.get(sign, "") if change == "falls" else sign
+        if sign not in ("<", "<=") or change not in ("falls", "rises"):
+            return None
+        operator = "-" if change == "falls" else "+"
+        return Reading((f"keep {term.text} {mirrored} previous({term.text}) {operator} {step.text}",))
+
     def keep(self, state: State) -> _Found:
+        if state.text in self.changing:
+            return None  # the first step has no value before
         return Reading((f"keep {state.text}",))
 
     def count_within(self, counted: Counted, duration: Duration) -> None:
@@ -159,9 +146,10 @@ class Rules(Conditions):
         return Reading((f"keep begins {state.at(ATOM)} implies always for {duration.text} {state.at(ATOM)}",))
 
     def lasts_exactly(self, state: State, duration: Duration) -> _Found:
-        held = f"always for {duration.text} {state.at(ATOM)}"
-        over = f"weak_next after {duration.text} {state.negated().at(ATOM)}"
-        return Reading((f"keep begins {state.at(ATOM)} implies ({held}) and {over}",))
+        if self.steps(duration) > MOST_STEPS:
+            return None
+        formula = lasting_formula(state, duration, state.negated())
+        return Reading((f"keep begins {state.at(ATOM)} implies {formula.text}",))
 
     def goals(self, *events: Event) -> Goals | None:
         if any(isinstance(event, Counted) for event in events[1:]):
@@ -197,7 +185,7 @@ class Rules(Conditions):
 
     def reach_without(self, event: Event, avoided: State) -> _Found:
         state = as_state(event)
-        if state is None or not _are_simple(state, avoided) or _is_negative(state):
+        if state is None or not _are_simple(state, avoided) or is_negative(state):
             return None
         return Reading((f"reach {state.text}", f"avoid {avoided.text}"))
 
@@ -260,6 +248,8 @@ class Rules(Conditions):
                 Reading((f"reach {goal.text}",), "if it is a goal"),
                 Reading((f"keep {state.at(OR)} implies {answer.state.at(OR)}",), f"for each step with `{state.text}`"),
             ]
+        if answer.keyword == "reach" and when != "after":
+            return None  # a goal, or a rule
         if state and answer.kind == "now" and answer.keyword == "keep" and when != "after":
             return Reading((f"keep {state.at(OR)} implies {answer.state.at(OR)}",))
         return _conditional(when, event, answers)
@@ -273,7 +263,7 @@ class Rules(Conditions):
             return None
         answer = answers[0].answer
         condition = _at(answer.state.negated() if answer.is_negative else answer.state, condition)
-        if not _are_simple(condition, answer.state):
+        if condition is None or not _are_simple(condition, answer.state):
             return None
         if answer.kind == "always" and answer.is_negative:
             return Reading((f"keep {answer.state.negated().at(OR)} implies {condition.at(OR)}",))
@@ -284,95 +274,11 @@ class Rules(Conditions):
     def unless_first(self, event: Event, answers: list[Asked]) -> _Found:
         return self.unless(answers, event)
 
-    def answers(self, *asked: Asked) -> list[list[Asked]]:
-        return [[*asked]]
-
-    def now(self, state: State) -> Asked:
-        return Asked(Answer("now", state))
-
-    def within(self, state: State, duration: Duration) -> Asked | list[Asked]:
-        if _is_negative(state):
-            never = State(f"not eventually within {duration.text} {state.negated().at(ATOM)}")
-            return [
-                Asked(Answer("now", never), "if it must hold at no step of that time", is_formula=True),
-                Asked(Answer("within", state, duration.text), "if one step is enough"),
-            ]
-        return Asked(Answer("within", state, duration.text))
-
-    def within_before(self, state: State, duration: Duration) -> Asked:
-        return Asked(Answer("now", State(f"once within {duration.text} {state.at(ATOM)}")))
-
-    def within_unless(self, state: State, duration: Duration, event: Event) -> Asked | None:
-        exception = as_state(event)
-        if exception is None or _is_negative(state) or state.level > OR:
-            return None
-        return Asked(Answer("within", joined([state, exception], "or"), duration.text))
-
-    def within_first(self, duration: Duration, state: State) -> Asked | list[Asked]:
-        return self.within(state, duration)
-
-    def reach_later(self, state: State) -> Asked:
-        return Asked(Answer("eventually", state, keyword="reach"))
-
-    def keep_now(self, state: State) -> Asked:
-        return Asked(Answer("now", state, keyword="keep"))
-
-    def lasting(self, state: State, duration: Duration) -> Asked:
-        return Asked(Answer("lasting", state, duration.text))
-
-    def lasting_first(self, duration: Duration, state: State) -> Asked:
-        return self.lasting(state, duration)
-
-    def lasting_exactly(self, state: State, duration: Duration) -> Asked:
-        over = f"weak_next after {duration.text} {state.negated().at(ATOM)}"
-        return Asked(
-            Answer("now", State(f"(always for {duration.text} {state.at(ATOM)}) and {over}", 1)), is_formula=True
-        )
-
-    def lasting_then(self, state: State, duration: Duration, following: State) -> Asked:
-        over = f"weak_next after {duration.text} {following.at(ATOM)}"
-        return Asked(
-            Answer("now", State(f"(always for {duration.text} {state.at(ATOM)}) and {over}", 1)), is_formula=True
-        )
-
-    def delayed(self, state: State, duration: Duration) -> Asked | None:
-        # A monitor remembers each step with the condition until the answer is due.
-        return Asked(Answer("delayed", state, duration.text)) if self.steps(duration) <= _MOST_STEPS else None
-
-    def delayed_first(self, duration: Duration, state: State) -> Asked | None:
-        return self.delayed(state, duration)
-
-    def until(self, state: State, end: State) -> Asked:
-        operator = "weak_until" if state.text.startswith("not ") else "until"
-        return Asked(Answer("now", State(f"({state.at(ATOM)} {operator} {end.at(ATOM)})")), is_formula=True)
-
-    def keep_until(self, state: State, end: State) -> Asked | list[Asked]:
-        return self.until(state, end) if state.text.startswith("not ") else _until(state, end)
-
-    def later(self, state: State) -> Asked:
-        return Asked(Answer("eventually", state))
-
-    def forever(self, state: State) -> Asked:
-        return Asked(Answer("always", state))
-
-    def next(self, state: State) -> Asked:
-        return Asked(Answer("now", State(f"weak_next {state.at(ATOM)}")), is_formula=True)
-
-    def never(self, state: State) -> Asked:
-        return Asked(Answer("always", state.negated(), "", True))
-
-    def never_for(self, state: State, duration: Duration) -> Asked:
-        return Asked(Answer("lasting", state.negated(), duration.text, True))
-
-    def never_until(self, state: State, end: State) -> Asked:
-        return Asked(Answer("now", State(f"({state.negated().at(ATOM)} weak_until {end.at(ATOM)})")), is_formula=True)
-
-    def stops(self, state: State) -> Asked:
-        return Asked(Answer("next", state.negated()))
-
 
 def _goal(event: Event) -> State | None:
     """Return a goal: `hidden for 4 steps` begins at the first of them, behind the goal before."""
+    if isinstance(event, Held) and event.sign in ("<", "<="):
+        return None  # the first step of it would do
     if not isinstance(event, Held) or not event.duration.is_steps or event.sign not in ("", ">="):
         return as_state(event)
     number, held = event.duration.number, event.state.at(ATOM)
@@ -382,14 +288,15 @@ def _goal(event: Event) -> State | None:
     return State(f"(always for {number} steps {held}) and next after {last} step{'s' * (last > 1)} {held}", AND)
 
 
-def _at(event: State, condition: State) -> State:
-    """Return a condition at the steps of an event: `since the last event` is since the one before."""
+def _at(event: State, condition: State) -> State | None:
+    """Return a condition at the steps of an event: `since the last event` is since the one before.
+
+    None for one that always holds there: ever since that very step.
+    """
     is_own = condition.text.startswith(f"(not {event.at(ATOM)} since ")
-    return State(f"previously {condition.text}") if is_own else condition
-
-
-def _is_negative(state: State) -> bool:
-    return state.text.startswith("not ") or " is not " in state.text or " != " in state.text
+    if is_own:
+        return State(f"previously {condition.text}")
+    return None if condition.text.endswith(f" since {event.at(ATOM)})") else condition
 
 
 def _are_simple(*states: State) -> bool:
@@ -433,18 +340,10 @@ def _between(state: State, start: State, end: State) -> Reading | None:
     return Reading((f"keep {begun} implies ({state.at(ATOM)} weak_until {end.at(ATOM)})",))
 
 
-def _until(state: State, end: State) -> list[Asked]:
-    weak, strong = (State(f"({state.at(ATOM)} {operator} {end.at(ATOM)})") for operator in ("weak_until", "until"))
-    return [
-        Asked(Answer("now", strong), f"if `{end.text}` must come", is_formula=True),
-        Asked(Answer("now", weak), "if it need not", is_formula=True),
-    ]
-
-
 def _conditional(when: When, event: Event, answers: list[Asked]) -> _Found:
-    is_later = all(asked.answer.kind in ("within", "eventually", "lasting", "delayed") for asked in answers)
-    # An answer on the same step is asked for while the number is beyond the limit.
-    state = event.state if isinstance(event, Crossing) and not is_later else as_state(event)
+    # A condition on the same step is asked for while the number is beyond the limit.
+    is_now = all(asked.answer.kind == "now" and not asked.is_formula for asked in answers)
+    state = event.state if isinstance(event, Crossing) and is_now else as_state(event)
     if state is None:
         return None
     readings = [_answer_readings(when, event, state, asked) for asked in answers]
@@ -457,9 +356,15 @@ def _conditional(when: When, event: Event, answers: list[Asked]) -> _Found:
 
 def _answer_readings(when: When, event: Event, state: State, asked: Asked) -> list[Reading]:
     answer = asked.answer
+    is_edge = state.text.startswith(("begins ", "ends "))
+    if asked.settled is not None and not is_edge:
+        asked = Asked(replace(answer, state=asked.settled))
+        answer = asked.answer
     if asked.is_formula:
         if when == "if" and "until " in answer.state.text:
             return []  # the rule may end there, or what it asks for
+        if asked.is_once and not is_edge:
+            state = State(f"begins {state.at(ATOM)}")
         return [Reading((f"keep {state.at(OR)} implies {answer.state.at(OR)}",), asked.condition)]
     if when in _LASTING and answer.keyword == "reach":
         return []

@@ -63,6 +63,8 @@ def _terms(words: Words, vocabulary: Mapping[str, str]) -> Iterator[Term | None]
                 yield Term("_ARROW", "=>")
             else:
                 yield Term(_SIGNS[word.type], word.text)
+        elif word.text == "one" and words.word(at) == "of":
+            yield Term(vocabulary["one"], "one")
         elif number := words.number(start):
             yield Term("NUMBER", number)
         elif any(words[start:at].text in known.values for known in words.names.names.values()):

@@ -1,0 +1,145 @@
+"""What the answers of rules mean: what a rule asks for after its condition."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from tltlc.core.record import record
+from tltlc.grammar.english.conditions import Conditions
+from tltlc.grammar.english.events import Event, as_state
+from tltlc.grammar.english.quantities import Duration
+from tltlc.grammar.mistakes.sentences.answers import Answer
+from tltlc.grammar.mistakes.sentences.states import AND, ATOM, OR, State, joined
+
+MOST_STEPS: Final = 8
+"""The most steps after which a condition must hold: a monitor has up to two to the power of them states."""
+
+
+@record
+class Asked:
+    """What a rule asks for after its condition, and when the words mean that.
+
+    ``is_formula`` says that the answer is a formula about later steps, which counts from the step of the condition,
+    ``is_once`` that it cannot be asked for at two steps in a row, but only where the condition begins. ``settled``
+    is what holds after a change that is asked for: a for `begins a`.
+    """
+
+    answer: Answer
+    condition: str = ""
+    is_formula: bool = False
+    is_once: bool = False
+    settled: State | None = None
+
+
+class Answers(Conditions):
+    """The meanings of the rules for answers."""
+
+    def answers(self, *asked: Asked) -> list[list[Asked]]:
+        return [[*asked]]
+
+    def now(self, state: State) -> Asked:
+        # A change is asked for at the step of the event alone, what holds after it at each such step.
+        is_change = state.text in self.settled or state.text in self.changing
+        return Asked(Answer("now", state), is_formula=is_change, settled=self.settled.get(state.text))
+
+    def within(self, state: State, duration: Duration) -> Asked | list[Asked]:
+        state = self.settled.get(state.text, state)
+        if is_negative(state):
+            never = State(f"not eventually within {duration.text} {state.negated().at(ATOM)}")
+            return [
+                Asked(Answer("now", never), "if it must hold at no step of that time", is_formula=True),
+                Asked(Answer("within", state, duration.text), "if one step is enough"),
+            ]
+        return Asked(Answer("within", state, duration.text))
+
+    def within_before(self, state: State, duration: Duration) -> Asked:
+        return Asked(Answer("now", State(f"once within {duration.text} {state.at(ATOM)}")))
+
+    def within_unless(self, state: State, duration: Duration, event: Event) -> Asked | None:
+        exception = as_state(event)
+        if exception is None or is_negative(state) or state.level > OR:
+            return None
+        return Asked(Answer("within", joined([state, exception], "or"), duration.text))
+
+    def within_first(self, duration: Duration, state: State) -> Asked | list[Asked]:
+        return self.within(state, duration)
+
+    def reach_later(self, state: State) -> Asked:
+        return Asked(Answer("eventually", state, keyword="reach"))
+
+    def keep_now(self, state: State) -> Asked:
+        return Asked(Answer("now", state, keyword="keep"))
+
+    def lasting(self, state: State, duration: Duration) -> Asked:
+        state = self.settled.get(state.text, state)
+        return Asked(Answer("lasting", state, duration.text))
+
+    def lasting_first(self, duration: Duration, state: State) -> Asked:
+        return self.lasting(state, duration)
+
+    def lasting_exactly(self, state: State, duration: Duration) -> Asked | None:
+        return self.lasting_then(state, duration, state.negated())
+
+    def lasting_then(self, state: State, duration: Duration, following: State) -> Asked | None:
+        if self.steps(duration) > MOST_STEPS:
+            return None
+        formula = lasting_formula(state, duration, following)
+        return Asked(Answer("now", formula), is_formula=True, is_once=True)
+
+    def delayed(self, state: State, duration: Duration) -> Asked | None:
+        # A monitor remembers each step with the condition until the answer is due.
+        return Asked(Answer("delayed", state, duration.text)) if self.steps(duration) <= MOST_STEPS else None
+
+    def delayed_first(self, duration: Duration, state: State) -> Asked | None:
+        return self.delayed(state, duration)
+
+    def until(self, state: State, end: State) -> Asked:
+        operator = "weak_until" if state.text.startswith("not ") else "until"
+        return Asked(Answer("now", State(f"({state.at(ATOM)} {operator} {end.at(ATOM)})")), is_formula=True)
+
+    def keep_until(self, state: State, end: State) -> Asked | list[Asked]:
+        return self.until(state, end) if state.text.startswith("not ") else _until(state, end)
+
+    def later(self, state: State) -> Asked:
+        return Asked(Answer("eventually", state))
+
+    def forever(self, state: State) -> Asked:
+        return Asked(Answer("always", state))
+
+    def next(self, state: State) -> Asked:
+        return Asked(Answer("now", State(f"weak_next {state.at(ATOM)}")), is_formula=True)
+
+    def never(self, state: State) -> Asked:
+        return Asked(Answer("always", state.negated(), "", True))
+
+    def never_for(self, state: State, duration: Duration) -> Asked:
+        return Asked(Answer("lasting", state.negated(), duration.text, True))
+
+    def never_within(self, state: State, duration: Duration) -> Asked:
+        never = State(f"not eventually within {duration.text} {state.at(ATOM)}")
+        return Asked(Answer("now", never), is_formula=True)
+
+    def never_until(self, state: State, end: State) -> Asked:
+        return Asked(Answer("now", State(f"({state.negated().at(ATOM)} weak_until {end.at(ATOM)})")), is_formula=True)
+
+    def stops(self, state: State) -> Asked:
+        return Asked(Answer("next", state.negated()))
+
+
+def lasting_formula(state: State, duration: Duration, following: State) -> State:
+    """Return the formula of a condition that holds for so long, and then another one."""
+    held = f"always for {duration.text} {state.at(ATOM)}"
+    return State(f"({held}) and weak_next after {duration.text} {following.at(ATOM)}", AND)
+
+
+def is_negative(state: State) -> bool:
+    """Whether a condition says that something does not hold."""
+    return state.text.startswith("not ") or " is not " in state.text or " != " in state.text
+
+
+def _until(state: State, end: State) -> list[Asked]:
+    weak, strong = (State(f"({state.at(ATOM)} {operator} {end.at(ATOM)})") for operator in ("weak_until", "until"))
+    return [
+        Asked(Answer("now", strong), f"if `{end.text}` must come", is_formula=True),
+        Asked(Answer("now", weak), "if it need not", is_formula=True),
+    ]

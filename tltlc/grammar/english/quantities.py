@@ -1,0 +1,238 @@
+"""What numbers and their comparisons in English sentences mean."""
+
+from __future__ import annotations
+
+from typing import Final, Literal
+
+from tltlc.core.record import record
+from tltlc.grammar.english.terminals import Term
+from tltlc.grammar.mistakes.declared_names import DeclaredNames
+from tltlc.grammar.mistakes.sentences.states import AND, ATOM, OR, State, joined
+from tltlc.grammar.mistakes.sentences.vocabulary import NEGATED_SIGN
+
+_MIRRORED: Final = {"<": ">", "<=": ">=", ">": "<", ">=": "<=", "==": "==", "!=": "!="}
+Change = Literal["falls", "rises", "stays", "varies"]
+
+
+@record
+class Number:
+    """A number or an expression of numbers: its text, and the terminal of a single name."""
+
+    text: str
+    term: Term | None = None
+
+    @property
+    def is_int(self) -> bool:
+        """Whether equality is exact: for whole numbers, and for counts."""
+        return self.term is not None and (self.term.kind == "INT")
+
+    @property
+    def ends(self) -> tuple[str, ...]:
+        """The ends of the declared range of a real number; () if there is none."""
+        declared = None if self.term is None else self.term.declared
+        return () if declared is None else tuple(end.replace(" / ", "/") for end in declared.ends)
+
+
+@record
+class Duration:
+    """A time such as ``3 s`` or ``20 steps``."""
+
+    number: str
+    unit: str
+
+    @property
+    def is_steps(self) -> bool:
+        """Whether the time is a number of steps."""
+        return self.unit in ("step", "steps")
+
+    @property
+    def text(self) -> str:
+        """The time in the language."""
+        return f"{self.number} {self.unit}"
+
+
+class Quantities:
+    """The meanings of the rules for numbers, conditions, and what lasts or is counted.
+
+    ``names`` are what the file declares.
+    """
+
+    def __init__(self, names: DeclaredNames) -> None:
+        self._step_s = names.step_s
+        self.limits: list[str] = []
+        """Why no clause can say a sentence."""
+        self.settled: dict[str, State] = {}
+        """Maps the texts of changes to what holds after them: `begins a` to a."""
+        self.changing: set[str] = set()
+        """The conditions that a number changes, which no first step meets."""
+
+    def steps(self, duration: Duration) -> float:
+        """Return how many steps a time takes; 0 if that is not known."""
+        if duration.is_steps:
+            return float(duration.number)
+        seconds = float(duration.number) * {"ms": 0.001, "s": 1.0, "min": 60.0, "h": 3600.0}[duration.unit]
+        return seconds / self._step_s if self._step_s else 0.0
+
+    # Numbers.
+
+    def variable(self, term: Term) -> Number:
+        return Number(term.text, term)
+
+    def constant(self, number: Term, unit: Term | None = None) -> Number | None:
+        if unit is not None and unit.text in ("step", "steps"):
+            return None
+        return Number(number.text if unit is None else f"{number.text} {unit.text}")
+
+    def previous(self, term: Term) -> Number:
+        return Number(f"previous({term.text})", term)
+
+    def value_at(self, term: Term, event: Term) -> None:
+        self.limits.append(
+            f"no clause can say what `{term.text}` was at `{event.text}`: let the game supply that number as a signal, "
+            f"and compare `{term.text}` with it"
+        )
+
+    def value_when(self, term: Term, name: Term, value: Term) -> None:
+        self.value_at(term, Term("BOOL", f"{name.text} becomes {value.text}"))
+
+    def initial(self, term: Term) -> Number:
+        return Number(f"initial({term.text})", term)
+
+    def in_brackets(self, number: Number) -> Number:
+        return Number(f"({number.text})", number.term)
+
+    def arithmetic(self, *parts: Number | Term) -> Number:
+        text = " ".join(part.text for part in parts) if len(parts) > 2 else "".join(part.text for part in parts)
+        numbers = [part for part in parts if isinstance(part, Number)]
+        is_int = all(number.is_int or number.term is None for number in numbers) and any(n.is_int for n in numbers)
+        return Number(text, Term("INT" if is_int else "REAL", text) if any(n.term for n in numbers) else None)
+
+    def duration(self, number: Term, unit: Term) -> Duration:
+        return Duration(number.text, unit.text)
+
+    def at_most(self) -> str:
+        return "<="
+
+    def at_least(self) -> str:
+        return ">="
+
+    def more(self) -> str:
+        return ">"
+
+    def less(self) -> str:
+        return "<"
+
+    def number(self, number: Term) -> str:
+        return number.text
+
+    def one(self) -> str:
+        return "1"
+
+    def two(self) -> str:
+        return "2"
+
+    def three(self) -> str:
+        return "3"
+
+    # Comparisons.
+
+    def comparison(self, left: Number, sign: Term, right: Number) -> State | None:
+        return comparison(left, sign.text, right)
+
+    def compared(self, left: Number, sign: str, right: Number) -> State | None:
+        return comparison(left, sign, right)
+
+    def equal(self, left: Number, right: Number) -> State | None:
+        return comparison(left, "==", right)
+
+    def unequal(self, left: Number, right: Number) -> State | None:
+        return comparison(left, "!=", right)
+
+    def chain(self, low: Number, first: Term, middle: Number, second: Term, high: Number) -> State | None:
+        one, other = comparison(low, first.text, middle), comparison(middle, second.text, high)
+        return None if one is None or other is None else joined([one, other], "and")
+
+    def between(self, middle: Number, low: Number, high: Number) -> State | None:
+        if middle.ends[:1] == (low.text,):
+            return comparison(middle, "<=", high)
+        if middle.ends[1:] == (high.text,):
+            return comparison(middle, ">=", low)
+        return State(f"{middle.text} >= {low.text} and {middle.text} <= {high.text}", AND)
+
+    def amount(self, sign: str, number: Term, term: Term) -> State | None:
+        return comparison(Number(term.text, term), sign, Number(number.text))
+
+    def falls(self) -> Change:
+        return "falls"
+
+    def rises(self) -> Change:
+        return "rises"
+
+    def stays(self) -> Change:
+        return "stays"
+
+    def varies(self) -> Change:
+        return "varies"
+
+    def changes(self, term: Term, change: Change) -> State | None:
+        now, before = Number(term.text, term), Number(f"previous({term.text})", term)
+        signs = {"falls": "<", "rises": ">", "stays": "==", "varies": "!="}
+        state = _change(now, signs[change], before)
+        if state is not None and change != "stays":
+            self.changing.add(state.text)
+        return state
+
+    def never_changes(self, term: Term, change: Change) -> State | None:
+        state = self.changes(term, change)
+        return None if state is None else state.negated()
+
+    def changes_by(self, term: Term, change: Change, step: Number) -> State | None:
+        return self.changes_by_compared(term, change, "==", step)
+
+    def changes_by_compared(self, term: Term, change: Change, sign: str, step: Number) -> State | None:
+        if change not in ("falls", "rises") or sign in ("<", "<="):
+            return None  # a change by at most that much is none, too
+        operator = "-" if change == "falls" else "+"
+        kind = term if step.is_int or step.term is None else Term("REAL", term.text)
+        now, then = Number(term.text, kind), Number(f"previous({term.text}) {operator} {step.text}", kind)
+        return _change(now, _MIRRORED[sign] if change == "falls" else sign, then)
+
+
+def comparison(left: Number, sign: str, right: Number) -> State | None:
+    """Return a comparison in the language, which has no equality of real numbers."""
+    if sign in ("==", "!="):
+        return _equality(left, sign, right)
+    return State(
+        f"{left.text} {sign} {right.text}",
+        ATOM,
+        f"{left.text} {NEGATED_SIGN[sign]} {right.text}",
+    )
+
+
+def _equality(left: Number, sign: str, right: Number) -> State | None:
+    is_exact = all(side.is_int or side.term is None for side in (left, right)) and (left.is_int or right.is_int)
+    if is_exact or (left.term is None and right.term is None):
+        opposite = "!=" if sign == "==" else "=="
+        return State(f"{left.text} {sign} {right.text}", ATOM, f"{left.text} {opposite} {right.text}")
+    number, other = (left, right) if left.term is not None else (right, left)
+    ends = number.ends
+    if len(ends) == 2 and other.text in ends:
+        state = comparison(number, ">=" if other.text == ends[1] else "<=", other)
+    else:
+        if sign == "!=":
+            return State(f"{number.text} < {other.text} or {number.text} > {other.text}", OR)
+        state = State(f"{number.text} >= {other.text} and {number.text} <= {other.text}", AND)
+    return state if sign == "==" or state is None else state.negated()
+
+
+_SIGN_OF: Final = {"at_most": "<=", "at_least": ">=", "more": ">", "less": "<"}
+
+
+def _change(now: Number, sign: str, before: Number) -> State | None:
+    if sign in ("==", "!=") and not now.is_int:
+        state = State(f"{now.text} >= {before.text} and {now.text} <= {before.text}", AND)
+        return state if sign == "==" else State(f"{now.text} > {before.text} or {now.text} < {before.text}", OR)
+    if sign in ("==", "!="):
+        opposite = "!=" if sign == "==" else "=="
+        return State(f"{now.text} {sign} {before.text}", ATOM, f"{now.text} {opposite} {before.text}")
+    return comparison(now, sign, before)
