@@ -21,7 +21,7 @@ class Asked:
 
     ``is_formula`` says that the answer is a formula about later steps, which counts from the step of the condition,
     ``is_once`` that it cannot be asked for at two steps in a row, but only where the condition begins. ``settled``
-    is what holds after a change that is asked for: a for `begins a`.
+    is what holds after a change that is asked for: a for `begins a`. ``denied`` is what must not hold for a time.
     """
 
     answer: Answer
@@ -29,6 +29,7 @@ class Asked:
     is_formula: bool = False
     is_once: bool = False
     settled: State | None = None
+    denied: State | None = None
 
 
 class Answers(Conditions):
@@ -117,7 +118,7 @@ class Answers(Conditions):
 
     def never_within(self, state: State, duration: Duration) -> Asked:
         never = State(f"not eventually within {duration.text} {state.at(ATOM)}")
-        return Asked(Answer("now", never), is_formula=True)
+        return Asked(Answer("now", never), is_formula=True, denied=state)
 
     def never_until(self, state: State, end: State) -> Asked:
         return Asked(Answer("now", State(f"({state.negated().at(ATOM)} weak_until {end.at(ATOM)})")), is_formula=True)

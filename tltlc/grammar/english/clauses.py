@@ -40,14 +40,14 @@ def with_whole_clause(diagnostic: Diagnostic, source: SourceFile, span: Span) ->
     mended = source.slice(span)
     for edit in diagnostic.fixes[0].edits[:1] if diagnostic.fixes else ():
         mended = source.text[span.start : edit.span.start] + edit.text + source.text[edit.span.end : span.end]
-    if _plain(text) in (_plain(mended), _plain(source.slice(span))):
+    if plain_text(text) in (plain_text(mended), plain_text(source.slice(span))):
         return diagnostic
     quoted = " and ".join(f"`{clause}`" for clause in readings[0].clauses)
     fix = replacement_fix(source, span, " ".join(readings[0].clauses))
     return replace(diagnostic, help=f"write {quoted}", fixes=(replace(fix, title=f"Write {quoted}"),))
 
 
-def _plain(text: str) -> str:
+def plain_text(text: str) -> str:
     """Return a clause without blanks and brackets, and with words for the signs of operators."""
     words = text.replace("&&", " and ").replace("||", " or ").replace("->", " implies ").replace("=>", " implies ")
     return "".join(words.replace("!=", "≠").replace("!", " not ").translate(_BRACKETS).split())

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from tltlc.core.record import record
 from tltlc.grammar.english.events import Counted, Crossing, Event, Held, as_state
-from tltlc.grammar.english.quantities import Duration, Quantities
+from tltlc.grammar.english.quantities import Duration, Number, Quantities, comparison
 from tltlc.grammar.english.terminals import Term
 from tltlc.grammar.mistakes.sentences.states import ATOM, OR, State, joined
 
@@ -28,6 +28,15 @@ class Conditions(Quantities):
 
     def not_named(self, term: Term) -> State:
         return State(term.text).negated()
+
+    def is_true(self, term: Term) -> State:
+        self.assigned.add(term.text)
+        return State(term.text)
+
+    def is_false(self, term: Term) -> State:
+        state = State(term.text).negated()
+        self.assigned.add(state.text)
+        return state
 
     def begins(self, term: Term) -> State:
         self.settled[f"begins {term.text}"] = State(term.text)
@@ -105,10 +114,15 @@ class Conditions(Quantities):
         return state if state is None or state.level == ATOM else State(f"({state.text})")
 
     def all_of(self, *events: Event) -> State | None:
-        return _joined(events, "and")
+        return None if self._has_open_end(events) else _joined(events, "and")
 
     def any_of(self, *events: Event) -> State | None:
-        return _joined(events, "or")
+        return None if self._has_open_end(events) else _joined(events, "or")
+
+    def _has_open_end(self, events: Sequence[Event]) -> bool:
+        """Whether `is false` stands behind the last condition alone, and may be about all of them."""
+        texts = [event.text in self.assigned for event in events if isinstance(event, State)]
+        return bool(texts) and texts[-1] and not texts[0]
 
     def none_of(self, *events: Event) -> State | None:
         states = [as_state(event) for event in events]

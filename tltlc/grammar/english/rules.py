@@ -360,6 +360,8 @@ def _answer_readings(when: When, event: Event, state: State, asked: Asked) -> li
     if asked.settled is not None and not is_edge:
         asked = Asked(replace(answer, state=asked.settled))
         answer = asked.answer
+    if asked.denied == state:
+        return []  # an event that must not come again
     if asked.is_formula:
         if when == "if" and "until " in answer.state.text:
             return []  # the rule may end there, or what it asks for

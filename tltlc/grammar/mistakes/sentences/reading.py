@@ -10,12 +10,14 @@ from tltlc.core.source import SourceFile, Span
 from tltlc.diagnostics.diagnostic import Diagnostic, Edit, Fix, replacement_fix
 from tltlc.grammar import lalr
 from tltlc.grammar.builder import Builder
+from tltlc.grammar.english.clauses import plain_text
 from tltlc.grammar.english.notes import notes
 from tltlc.grammar.english.readings import sentence
 from tltlc.grammar.english.rules import Reading
 from tltlc.grammar.lexer import END, Token, tokenize
 from tltlc.grammar.mistakes.clauses import is_own_line
 from tltlc.grammar.mistakes.declared_names import declared_names
+from tltlc.grammar.mistakes.english_rewrite import REAL_TIME
 from tltlc.grammar.mistakes.parse_failure import ParseFailure
 from tltlc.grammar.mistakes.rephrasing import span_of
 from tltlc.grammar.mistakes.sentences.calls import with_own_calls, without_braces
@@ -47,6 +49,7 @@ _LONGEST: Final = 60
 """The most tokens of a sentence; a longer clause is hardly one."""
 _LONGEST_CHECKED: Final = 500
 """Fewer tokens than these are read again with the fix of their error."""
+_UNITS: Final = frozenset((*REAL_TIME, "step", "steps"))
 _KEYWORDS: Final = ("reach", "keep", "avoid", "require", "limit")
 
 
@@ -91,7 +94,7 @@ def _with_reading(
     found = sentence(words)
     if not found.readings and not found.limit:
         found = sentence(with_names(words))
-    if is_mended and len(found.readings) != 1:
+    if is_mended and (len(found.readings) != 1 or _is_same(found.readings[0], failure, known.fixes[0])):
         return known
     if found.readings and " ".join(found.readings[0].clauses) != words.text:
         return _with_readings(failure, known, found.readings)
@@ -107,12 +110,17 @@ def _is_foreign(fix: Fix, failure: ParseFailure) -> bool:
     )
 
 
+def _is_same(reading: Reading, failure: ParseFailure, fix: Fix) -> bool:
+    """Whether a fix leaves the clauses of a reading, apart from blanks and brackets."""
+    return plain_text(" ".join(reading.clauses)) == plain_text(_mended(failure, fix))
+
+
 def _has_readings(failure: ParseFailure, help_: str) -> bool:
     """Whether a help names two forms in the words of the file; clauses among them can be parsed."""
     names = declared_names(failure.source).names
     texts = {text for text in help_.split("`")[1::2] if not text.isidentifier()}
     texts = {text for text in texts if text.split(" ")[0] not in _KEYWORDS or is_valid((text,))}
-    used = [{token.text for token in tokenize(text).tokens if token.type == "NAME"} for text in texts]
+    used = [{token.text for token in tokenize(text).tokens if token.type == "NAME"} - _UNITS for text in texts]
     return sum(bool(known) and known <= names.keys() for known in used) > 1
 
 
@@ -256,11 +264,7 @@ def _is_mended(failure: ParseFailure, fix: Fix) -> bool:
     piece = span_of(failure.tokens[:-1])
     if not all(piece.start <= edit.span.start and edit.span.end <= piece.end for edit in fix.edits):
         return True
-    text, end = "", piece.start
-    for edit in sorted(fix.edits, key=lambda edit: edit.span.start):
-        text += failure.source.text[end : edit.span.start] + edit.text
-        end = edit.span.end
-    body = text + failure.source.text[end : piece.end]
+    body = _mended(failure, fix)
     source = SourceFile("", f"spec s {{ {body} }}", "text")
     lexed = tokenize(source.text)
     try:
@@ -268,6 +272,16 @@ def _is_mended(failure: ParseFailure, fix: Fix) -> bool:
     except lalr.UnexpectedTokenError:
         return False
     return True
+
+
+def _mended(failure: ParseFailure, fix: Fix) -> str:
+    """Return the text of the piece after a fix."""
+    piece = span_of(failure.tokens[:-1])
+    text, end = "", piece.start
+    for edit in sorted(fix.edits, key=lambda edit: edit.span.start):
+        text += failure.source.text[end : edit.span.start] + edit.text
+        end = edit.span.end
+    return text + failure.source.text[end : piece.end]
 
 
 def _words(failure: ParseFailure) -> Words:
