@@ -224,6 +224,13 @@ def test_so_many_steps_in_a_row_take_the_time_that_a_note_says() -> None:
     assert [verdict == "violated" for verdict in verdicts] == [False, False, False, False, True]
 
 
+@pytest.mark.parametrize("typed", ["keep changes(phase) implies fire", "keep fierce and phase is menu"])
+def test_a_name_that_nothing_declares_gets_no_fix_that_leaves_it(typed: str) -> None:
+    (error,) = errors(spec(typed))
+    assert error.code == "TLT0201"
+    assert not (error.help or "").startswith("write ")
+
+
 def test_an_error_whose_own_fix_is_enough_keeps_it() -> None:
     (error,) = errors(spec("keep phase == results"))
     assert error.help == "write `phase is results`"

@@ -37,6 +37,8 @@ def with_whole_clause(diagnostic: Diagnostic, source: SourceFile, span: Span) ->
     if len(readings) != 1 or not is_valid(readings[0].clauses):
         return diagnostic
     text = " ".join(readings[0].clauses)
+    if diagnostic.code == "TLT0201" and source.slice(label.span) in {token.text for token in tokenize(text).tokens}:
+        return diagnostic  # the unknown name is still there
     mended = source.slice(span)
     for edit in diagnostic.fixes[0].edits[:1] if diagnostic.fixes else ():
         mended = source.text[span.start : edit.span.start] + edit.text + source.text[edit.span.end : span.end]
