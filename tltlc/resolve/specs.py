@@ -33,6 +33,8 @@ from tltlc.resolve.timers import Timers
 from tltlc.resolve.unfolding import bounded_parts, unfold
 from tltlc.resolve.values import Env
 
+_MOST_HINTS: Final = 20
+"""The most errors of which the whole clause is read again."""
 _ONCE = ("level", "limit", "judge", "semantics")
 
 
@@ -58,7 +60,7 @@ def resolve_spec(declaration: SpecDecl, groups: tuple[tuple[str, ...], ...], env
             else:
                 _store_metadata(clause, metadata, env)
         except ResolutionError as failure:
-            log.add(_in_whole(failure.diagnostic, clause, source))
+            log.add(_in_whole(failure.diagnostic, clause, source) if len(log) < _MOST_HINTS else failure.diagnostic)
             complete = False
     limit = None
     try:

@@ -8,9 +8,9 @@ from tltlc.core.record import replace
 from tltlc.core.source import SourceFile, Span
 from tltlc.diagnostics.diagnostic import Diagnostic, replacement_fix
 from tltlc.grammar.english.readings import sentence
-from tltlc.grammar.lexer import END, tokenize
+from tltlc.grammar.lexer import tokenize
 from tltlc.grammar.mistakes.declared_names import declared_names
-from tltlc.grammar.mistakes.sentences.calls import with_own_calls
+from tltlc.grammar.mistakes.sentences.calls import FOREIGN, with_own_calls
 from tltlc.grammar.mistakes.sentences.validity import is_valid
 from tltlc.grammar.mistakes.sentences.vocabulary import ENGLISH
 from tltlc.grammar.mistakes.sentences.words import words_of
@@ -18,6 +18,7 @@ from tltlc.grammar.mistakes.sentences.words import words_of
 _CODES: Final = ("TLT0110", "TLT0201", "TLT0301", "TLT0302")
 """The errors that words of other languages cause: `mode == chase`, `prev(mode)`, `a` compared with a bool."""
 _LONGEST: Final = 60
+_LONGEST_TEXT: Final = 1000
 _BRACKETS: Final = str.maketrans("", "", "()")
 
 
@@ -28,17 +29,19 @@ def with_whole_clause(diagnostic: Diagnostic, source: SourceFile, span: Span) ->
         return diagnostic
     if diagnostic.code == "TLT0110" and not diagnostic.fixes:
         return diagnostic  # the help says what to declare
-    tokens = [token for token in tokenize(source.text).tokens if span.start <= token.start and token.end <= span.end]
-    tokens = [token for token in tokens if token.type != END]
-    if not tokens or len(tokens) > _LONGEST or "//" in source.slice(span):
+    if diagnostic.code == "TLT0201" and source.slice(label.span) not in FOREIGN:
+        return diagnostic  # a name that nothing declares
+    clause = SourceFile(source.name, source.slice(span), source.kind)
+    tokens = tokenize(clause.text).tokens[:-1] if len(clause.text) <= _LONGEST_TEXT else ()
+    if not 0 < len(tokens) <= _LONGEST or "//" in clause.text:
         return diagnostic
-    words = with_own_calls(words_of(source, declared_names(source), tokens, ENGLISH))
+    words = with_own_calls(words_of(clause, declared_names(source), tokens, ENGLISH))
     readings = sentence(words).readings
     if len(readings) != 1 or not is_valid(readings[0].clauses):
         return diagnostic
     text = " ".join(readings[0].clauses)
     if diagnostic.code == "TLT0201" and source.slice(label.span) in {token.text for token in tokenize(text).tokens}:
-        return diagnostic  # the unknown name is still there
+        return diagnostic  # the name is still there
     mended = source.slice(span)
     for edit in diagnostic.fixes[0].edits[:1] if diagnostic.fixes else ():
         mended = source.text[span.start : edit.span.start] + edit.text + source.text[edit.span.end : span.end]

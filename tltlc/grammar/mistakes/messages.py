@@ -64,14 +64,20 @@ _BOUNDED_UNTILS: Final = {
 
 
 def unexpected_token(
-    source: SourceFile, tokens: Sequence[Token], error: lalr.UnexpectedTokenError, start: str
+    source: SourceFile,
+    tokens: Sequence[Token],
+    error: lalr.UnexpectedTokenError,
+    start: str,
+    *,
+    reads_sentences: bool = True,
 ) -> Diagnostic:
     """Return the diagnostic for a syntax error.
 
     ``tokens`` are one declaration, clause, line of a test or formula. The parser read them as the
-    nonterminal ``start`` and raised ``error``.
+    nonterminal ``start`` and raised ``error``. With ``reads_sentences``, a clause is also read as a
+    sentence of English, which takes about 0.1 s.
     """
-    return _at_fix(_diagnostic(source, tokens, error, start, _diagnostic))
+    return _at_fix(_diagnostic(source, tokens, error, start, _diagnostic, reads_sentences=reads_sentences))
 
 
 def _diagnostic(
@@ -80,6 +86,8 @@ def _diagnostic(
     error: lalr.UnexpectedTokenError,
     start: str,
     read_again: ReadAgain | None = None,
+    *,
+    reads_sentences: bool = True,
 ) -> Diagnostic:
     at = misread_index(tokens, error.index, start)
     failure = ParseFailure(source, tokens, error if at == error.index else stop_at(tokens, at, start), start)
@@ -89,9 +97,13 @@ def _diagnostic(
     for rule in _RULES:
         diagnostic = rule(failure)
         if diagnostic:
-            return sentence_help(failure, diagnostic, is_explained=rule not in _OPEN_RULES, read_again=read_again)
-    diagnostic = failure.error("TLT0101", failure.expectation(), failure.form())
-    return sentence_help(failure, diagnostic, is_explained=False, read_again=read_again)
+            is_explained = rule not in _OPEN_RULES
+            break
+    else:
+        diagnostic, is_explained = failure.error("TLT0101", failure.expectation(), failure.form()), False
+    return sentence_help(
+        failure, diagnostic, is_explained=is_explained, read_again=read_again, reads_sentences=reads_sentences
+    )
 
 
 def _at_fix(diagnostic: Diagnostic) -> Diagnostic:

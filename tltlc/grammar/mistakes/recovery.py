@@ -27,6 +27,8 @@ from tltlc.grammar.mistakes.declaration_forms.reading import (
 from tltlc.grammar.mistakes.fragments import block_kind, declarations, is_first_on_line, lines
 from tltlc.grammar.tables import load
 
+_MOST_SENTENCES: Final = 20
+"""The most errors of a text of which the clause is read as a sentence, so that a bad text is checked in time."""
 MAX_ERRORS: Final = 200
 """After this many errors, the rest of the text is not read, because it is hardly a specification."""
 
@@ -181,7 +183,10 @@ class _Reader:
 
     def _refuse(self, piece: list[Token], start: str, error: lalr.UnexpectedTokenError) -> None:
         """Add the error for a piece that cannot be parsed to ``diagnostics``."""
-        self.diagnostics.append(messages.unexpected_token(self._source, _with_end(piece), error, start))
+        few = len(self.diagnostics) < _MOST_SENTENCES
+        self.diagnostics.append(
+            messages.unexpected_token(self._source, _with_end(piece), error, start, reads_sentences=few)
+        )
 
     def _refuse_deep(self, piece: list[Token]) -> bool:
         """Return whether the brackets of a piece nest too deep; if so, add an error to ``diagnostics``."""

@@ -14,6 +14,8 @@ _EDGES: Final = {
     **dict.fromkeys(("fall", "falling", "falls", "fell", "falling_edge"), "ends"),
 }
 """Maps functions for a change of a bool to the operator that says the same."""
+FOREIGN: Final = frozenset((*_BEFORE, *_FIRST, *_EDGES, "count"))
+"""The functions of other languages that are rewritten."""
 
 
 def with_own_calls(words: Words) -> Words:

@@ -58,10 +58,20 @@ ReadAgain = Callable[[SourceFile, Sequence[Token], lalr.UnexpectedTokenError, st
 
 
 def sentence_help(
-    failure: ParseFailure, diagnostic: Diagnostic, *, is_explained: bool, read_again: ReadAgain | None
+    failure: ParseFailure,
+    diagnostic: Diagnostic,
+    *,
+    is_explained: bool,
+    read_again: ReadAgain | None,
+    reads_sentences: bool,
 ) -> Diagnostic:
-    """Return the error for a clause with the fix that its English sentence suggests, and what to know of that fix."""
-    helped = _with_reading(failure, diagnostic, is_explained=is_explained, read_again=read_again)
+    """Return the error for a clause with the fix that its English sentence suggests, and what to know of that fix.
+
+    ``is_explained`` says that the error is about a mistake in a clause of the language. Without
+    ``reads_sentences``, patterns alone make the fix.
+    """
+    read = _with_reading if reads_sentences else _by_patterns
+    helped = read(failure, diagnostic, is_explained=is_explained, read_again=read_again)
     piece = span_of(failure.tokens[:-1]) if len(failure.tokens) > 1 else None
     edits = helped.fixes[0].edits if helped.fixes else ()
     if piece is None or len(edits) != 1 or edits[0].span != piece or len(failure.tokens) > _LONGEST:
