@@ -236,6 +236,11 @@ def test_an_error_whose_own_fix_is_enough_keeps_it() -> None:
     assert error.help == "write `phase is results`"
 
 
+def test_no_sentence_is_read_without_lark(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("tltlc.grammar.english.readings.find_spec", lambda name: None)
+    assert read("when fire then spray") == Sentence()
+
+
 def test_each_list_of_phrases_stands_in_the_grammar() -> None:
     grammar = (Path(tltlc.__file__).parent / "grammar" / "english" / "sentences.lark").read_text(encoding="utf-8")
     assert set(re.findall(r"\b_w_(\w+)", re.sub("//.*", "", grammar))) == set(PHRASES)

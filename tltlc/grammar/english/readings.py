@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from functools import lru_cache
+from importlib.util import find_spec
 from itertools import islice, product
 from typing import TYPE_CHECKING, Any, Final
 
@@ -34,8 +35,11 @@ class Sentence:
 def sentence(words: Words) -> Sentence:
     """Return the readings of a sentence; none if it is no sentence of the grammar.
 
-    Several lines may be one sentence, or one for each line.
+    Several lines may be one sentence, or one for each line. Without lark, which the playground does not
+    load, no sentence is read.
     """
+    if find_spec("lark") is None:
+        return Sentence()
     found = _sentence(words)
     lines = words.lines()
     if found.readings or found.limit or len(lines) < 2:
