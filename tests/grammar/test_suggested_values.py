@@ -46,9 +46,10 @@ def test_the_fixes_keep_each_value(clause: str, meant: str) -> None:
     assert mended(clause) == meant
 
 
-def test_a_second_value_after_is_not_is_no_value_either() -> None:
+def test_a_second_value_after_is_not_gets_no_fix() -> None:
     error = error_of("keep mode is not chase or alert")[1]
-    assert error.help == "write `keep not (mode is chase or mode is alert)`"
+    assert error.fixes == ()
+    assert error.help == "`alert` is a value of `mode`: write `mode is not chase and mode is not alert`"
 
 
 def test_the_value_of_an_enum_at_the_step_before_gets_a_form() -> None:

@@ -151,7 +151,9 @@ class Conditions(Quantities):
             joined([state if at == which else state.negated() for at, state in enumerate(states)], "and")
             for which in range(len(states))
         ]
-        return State(" or ".join(f"({case.text})" for case in cases), OR)
+        state = State(" or ".join(f"({case.text})" for case in cases), OR)
+        self.exclusive.add(state.text)
+        return state
 
     def at_most_one(self, members: Members) -> State | None:
         states = members.states

@@ -63,6 +63,8 @@ class Quantities:
         """Why no clause can say a sentence."""
         self.settled: dict[str, State] = {}
         """Maps the texts of changes to what holds after them: `begins a` to a."""
+        self.exclusive: set[str] = set()
+        """The conditions that exactly one of several holds: as a goal, they may be about the whole episode."""
         self.assigned: set[str] = set()
         """The conditions that are written with `is true` or `is false`."""
         self.changing: set[str] = set()

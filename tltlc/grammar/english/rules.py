@@ -156,7 +156,8 @@ class Rules(Answers):
             return None  # the count begins at the first step, not at the goal before
         states = [_goal(event) for event in events]
         known = [state for state in states if state is not None]
-        return Goals(tuple(known)) if len(known) == len(states) else None
+        is_clear = not any(state.text in self.exclusive for state in known)
+        return Goals(tuple(known)) if len(known) == len(states) and is_clear else None
 
     def repeated(self, *parts: Event | str) -> Goals | None:
         """Return goals that are repeated: `(a then b) 3 times`."""
