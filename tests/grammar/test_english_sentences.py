@@ -12,6 +12,7 @@ from tests.grammar.phrases_as_typed import errors, fix
 from tltlc.core.source import SourceFile
 from tltlc.grammar.english.phrases import PHRASES
 from tltlc.grammar.english.readings import Sentence, sentence
+from tltlc.grammar.english.rules import Rules
 from tltlc.grammar.lexer import tokenize
 from tltlc.grammar.mistakes.declared_names import declared_names
 from tltlc.grammar.mistakes.sentences.calls import with_own_calls
@@ -241,6 +242,16 @@ def test_no_sentence_is_read_without_lark(monkeypatch: pytest.MonkeyPatch) -> No
     assert read("when fire then spray") == Sentence()
 
 
+def grammar() -> str:
+    text = (Path(tltlc.__file__).parent / "grammar" / "english" / "sentences.lark").read_text(encoding="utf-8")
+    return re.sub("//.*", "", text)
+
+
 def test_each_list_of_phrases_stands_in_the_grammar() -> None:
-    grammar = (Path(tltlc.__file__).parent / "grammar" / "english" / "sentences.lark").read_text(encoding="utf-8")
-    assert set(re.findall(r"\b_w_(\w+)", re.sub("//.*", "", grammar))) == set(PHRASES)
+    assert set(re.findall(r"\b_w_(\w+)", grammar())) == set(PHRASES)
+
+
+def test_each_rule_of_the_grammar_has_a_method_that_says_what_it_means() -> None:
+    names = re.findall(r"-> *(\w+)", grammar())
+    assert len(names) > 100
+    assert [name for name in names if not callable(getattr(Rules, name, None))] == []

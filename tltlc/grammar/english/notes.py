@@ -28,8 +28,9 @@ def notes(clauses: str, names: DeclaredNames, typed: str) -> tuple[str, ...]:
         declarations: Sequence[Declaration] = lalr.run(load(), "module", lexed.tokens, Builder(source, lexed.docs))
     except lalr.UnexpectedTokenError:
         return ()
-    found = (note for spec in declarations for part in expressions(spec) for note in _notes(part, source, names.step_s))
-    return tuple(dict.fromkeys(note for note, word in found if word not in typed))
+    written = (part for spec in declarations for part in expressions(spec))
+    all_notes = (note for part in written for note in _notes(part, source, names.step_s))
+    return tuple(dict.fromkeys(note for note, word in all_notes if word not in typed))
 
 
 def _notes(expression: Expr, source: SourceFile, step_s: float) -> Iterator[tuple[str, str]]:

@@ -10,7 +10,7 @@ from tltlc.grammar.mistakes.declared_names import DeclaredNames
 from tltlc.grammar.mistakes.sentences.states import AND, ATOM, OR, State, joined
 from tltlc.grammar.mistakes.sentences.vocabulary import NEGATED_SIGN
 
-_MIRRORED: Final = {"<": ">", "<=": ">=", ">": "<", ">=": "<=", "==": "==", "!=": "!="}
+MIRRORED: Final = {"<": ">", "<=": ">=", ">": "<", ">=": "<=", "==": "==", "!=": "!="}
 Change = Literal["falls", "rises", "stays", "varies"]
 
 
@@ -199,7 +199,7 @@ class Quantities:
         operator = "-" if change == "falls" else "+"
         kind = term if step.is_int or step.term is None else Term("REAL", term.text)
         now, then = Number(term.text, kind), Number(f"previous({term.text}) {operator} {step.text}", kind)
-        return _change(now, _MIRRORED[sign] if change == "falls" else sign, then)
+        return _change(now, MIRRORED[sign] if change == "falls" else sign, then)
 
 
 def comparison(left: Number, sign: str, right: Number) -> State | None:

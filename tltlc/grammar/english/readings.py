@@ -40,14 +40,14 @@ def sentence(words: Words) -> Sentence:
     """
     if find_spec("lark") is None:
         return Sentence()
-    found = _sentence(words)
+    whole = _sentence(words)
     lines = words.lines()
-    if found.readings or found.limit or len(lines) < 2:
-        return found
-    each = [_sentence(line) for line in lines]
-    if any(len(part.readings) != 1 for part in each):
-        return found
-    return Sentence((Reading(tuple(clause for part in each for clause in part.readings[0].clauses)),))
+    if whole.readings or whole.limit or len(lines) < 2:
+        return whole
+    sentences = [_sentence(line) for line in lines]
+    if any(len(line.readings) != 1 for line in sentences):
+        return whole
+    return Sentence((Reading(tuple(clause for line in sentences for clause in line.readings[0].clauses)),))
 
 
 def _sentence(words: Words) -> Sentence:
@@ -55,11 +55,11 @@ def _sentence(words: Words) -> Sentence:
     from lark.exceptions import UnexpectedInput
 
     parser, vocabulary = _parser()
-    found = terms(words, vocabulary)
-    if not found:
+    terminals = terms(words, vocabulary)
+    if not terminals:
         return Sentence()
     try:
-        tree = parser.parse([Token(term.kind, term) for term in found])
+        tree = parser.parse([Token(term.kind, term) for term in terminals])
     except UnexpectedInput:
         return Sentence()
     assert isinstance(tree, Tree)
@@ -113,8 +113,8 @@ def _values(node: Any, rules: Rules) -> list[Any]:
 def _unique(values: list[Any]) -> list[Any]:
     """Return the different values; the crossing of a limit is also read as the state behind it, which is left out."""
     crossed = [value.state for value in values if isinstance(value, Crossing)]
-    found: list[Any] = []
+    different: list[Any] = []
     for value in values:
-        if value not in found and value not in crossed:
-            found.append(value)
-    return found
+        if value not in different and value not in crossed:
+            different.append(value)
+    return different

@@ -7,7 +7,7 @@ from typing import Final, Literal
 from tltlc.core.record import record, replace
 from tltlc.grammar.english.answers import MOST_STEPS, Answers, Asked, is_negative, lasting_formula
 from tltlc.grammar.english.events import Counted, Crossing, Event, Held, as_state
-from tltlc.grammar.english.quantities import Change, Duration, Number
+from tltlc.grammar.english.quantities import MIRRORED, Change, Duration, Number
 from tltlc.grammar.english.terminals import Term
 from tltlc.grammar.mistakes.sentences.answers import Answer
 from tltlc.grammar.mistakes.sentences.rules import answered
@@ -102,11 +102,10 @@ class Rules(Answers):
         return Reading((f"require always for {duration.text} {state.negated().at(ATOM)}",))
 
     def keep_change(self, term: Term, change: Change, sign: str, step: Number) -> _Found:
-        mirrored = {"<": ">", "<=": ">="}.get(sign, "") if change == "falls" else sign
         if sign not in ("<", "<=") or change not in ("falls", "rises"):
             return None
-        operator = "-" if change == "falls" else "+"
-        return Reading((f"keep {term.text} {mirrored} previous({term.text}) {operator} {step.text}",))
+        operator, relation = ("-", MIRRORED[sign]) if change == "falls" else ("+", sign)
+        return Reading((f"keep {term.text} {relation} previous({term.text}) {operator} {step.text}",))
 
     def keep(self, state: State) -> _Found:
         if state.text in self.changing:
@@ -350,9 +349,9 @@ def _conditional(when: When, event: Event, answers: list[Asked]) -> _Found:
     readings = [_answer_readings(when, event, state, asked) for asked in answers]
     if len(readings) == 1:
         return readings[0]
-    if any(len(found) != 1 or found[0].condition for found in readings):
+    if any(len(of_answer) != 1 or of_answer[0].condition for of_answer in readings):
         return None
-    return Reading(tuple(clause for found in readings for clause in found[0].clauses))
+    return Reading(tuple(clause for of_answer in readings for clause in of_answer[0].clauses))
 
 
 def _answer_readings(when: When, event: Event, state: State, asked: Asked) -> list[Reading]:
@@ -386,8 +385,8 @@ def _two_readings(event: State, answer: Answer) -> list[Reading]:
         return []
     a, b = event.at(OR), answer.state
     both = joined([event, b.negated()], "and").text
-    each = f"avoid {both}" if answer.is_negative else f"keep {a} implies {b.at(OR)}"
+    at_each_step = f"avoid {both}" if answer.is_negative else f"keep {a} implies {b.at(OR)}"
     return [
-        Reading((each,), f"for each step with `{event.text}`"),
+        Reading((at_each_step,), f"for each step with `{event.text}`"),
         Reading((f"keep {a} implies always {b.at(ATOM)}",), "if it holds from then on"),
     ]

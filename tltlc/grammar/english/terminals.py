@@ -39,12 +39,12 @@ def terms(words: Words, vocabulary: Mapping[str, str]) -> list[Term] | None:
 
     ``vocabulary`` maps the English words of the grammar to their terminals.
     """
-    found: list[Term] = []
+    terminals: list[Term] = []
     for term in _terms(words, vocabulary):
         if term is None:
             return None
-        found.append(term)
-    return found
+        terminals.append(term)
+    return terminals
 
 
 def _terms(words: Words, vocabulary: Mapping[str, str]) -> Iterator[Term | None]:

@@ -18,8 +18,8 @@ from tltlc.tools.judge.measures import short_number
 class StepValue:
     """A value at a step: ``subject`` is what has it, such as ``mode``, and ``value`` the value in words, ``alert``.
 
-    Where a condition is told that holds, such as "mode was alert at the step before", it is the ``subject``, and
-    ``value`` is empty. ``reads`` are the values of what the subject is computed from.
+    A condition that holds, such as "mode was alert at the step before", is a ``subject`` without a ``value``.
+    ``reads`` are the values of what the subject is computed from.
     """
 
     subject: str
