@@ -48,10 +48,13 @@ class Answers(Conditions):
         if is_negative(state):
             never = State(f"not eventually within {duration.text} {state.negated().at(ATOM)}")
             return [
-                Asked(Answer("now", never), "if it must hold at no step of that time", is_formula=True),
+                Asked(Answer("now", never), "if it must hold at no step of that time", True, denied=state.negated()),
                 Asked(Answer("within", state, duration.text), "if one step is enough"),
             ]
         return Asked(Answer("within", state, duration.text))
+
+    def reach_in_time(self, state: State, duration: Duration) -> Asked:
+        return Asked(Answer("within", self.settled.get(state.text, state), duration.text))
 
     def within_before(self, state: State, duration: Duration) -> Asked:
         return Asked(Answer("now", State(f"once within {duration.text} {state.at(ATOM)}")))

@@ -23,8 +23,8 @@ PHRASES: Final[Mapping[str, str]] = {
     "on every|on|upon",
     "after": "after|once|right after|immediately after|directly after|following|from",
     "unless": "unless|except when|except if|except while|except during|except|unless when",
-    "only_when": "only with|only if|only when|only while|only whenever|only during|only as long as|only at|only in|"
-    "requires|needs",
+    "only_when": "only with|only if|only when|only while|only whenever|only during|only as long as|only at|only in",
+    "needs": "requires|needs|depends on",
     "only_after": "only after|only once|not before|not until|comes after|happens after|only happens after",
     "iff": "iff|if and only if|exactly when|exactly if|exactly while",
     "until": "until|till|up until",

@@ -202,6 +202,13 @@ class Rules(Answers):
             return Reading((f"keep {begun} implies {condition.at(OR)}",))
         return None if condition is None else Reading((f"keep {state.at(OR)} implies once {condition.at(ATOM)}",))
 
+    def needs(self, state: State, condition: State) -> _Found:
+        a, b = state.at(OR), condition
+        return [
+            Reading((f"keep {a} implies {b.at(OR)}",), "if both must hold at the same step"),
+            Reading((f"keep {a} implies once {b.at(ATOM)}",), f"if `{b.text}` may have held before"),
+        ]
+
     def exactly_when(self, state: State, event: Event) -> _Found:
         condition = as_state(event)
         return None if condition is None else Reading((f"keep {state.at(OR)} iff {condition.at(OR)}",))
@@ -360,7 +367,7 @@ def _answer_readings(when: When, event: Event, state: State, asked: Asked) -> li
     if asked.settled is not None and not is_edge:
         asked = Asked(replace(answer, state=asked.settled))
         answer = asked.answer
-    if asked.denied == state:
+    if asked.denied is not None and asked.denied.text == state.text:
         return []  # an event that must not come again
     if asked.is_formula:
         if when == "if" and "until " in answer.state.text:

@@ -49,6 +49,10 @@ _LONGEST: Final = 60
 """The most tokens of a sentence; a longer clause is hardly one."""
 _LONGEST_CHECKED: Final = 500
 """Fewer tokens than these are read again with the fix of their error."""
+_ENGLISH_ALONE: Final = phrases(
+    "since", "requires", "needs", "falls below", "drops below", "goes below", "rises above", "goes above"
+)
+"""Words whose meaning in English is not that of an operator, or more than that of a comparison."""
 _UNITS: Final = frozenset((*REAL_TIME, "step", "steps"))
 _KEYWORDS: Final = ("reach", "keep", "avoid", "require", "limit")
 
@@ -96,15 +100,22 @@ def _with_reading(
     if known.code == "TLT0110" and not known.fixes:
         return known  # the help says what to declare
     is_mended = bool(known.fixes) and _is_mended(failure, known.fixes[0])
-    if (is_mended and not _is_foreign(known.fixes[0], failure)) or _has_readings(failure, known.help or ""):
-        return known
     words = _words(failure)
+    is_english = words.find(_ENGLISH_ALONE) is not None
+    if not is_english and (
+        (is_mended and not _is_foreign(known.fixes[0], failure)) or _has_readings(failure, known.help or "")
+    ):
+        return known
     if not words or words.word(0) == "require" or (is_imperative(words) and words.word(0) not in _KEYWORDS):
         return known
     found = sentence(words)
     if not found.readings and not found.limit:
         found = sentence(with_names(words))
-    if is_mended and (len(found.readings) != 1 or _is_same(found.readings[0], failure, known.fixes[0])):
+    if (
+        is_mended
+        and not is_english
+        and (len(found.readings) != 1 or _is_same(found.readings[0], failure, known.fixes[0]))
+    ):
         return known
     if found.readings and " ".join(found.readings[0].clauses) != words.text:
         return _with_readings(failure, known, found.readings)
