@@ -206,7 +206,8 @@ def test_one_fix_mends_all_words_of_a_clause_that_can_be_parsed(typed: str, mean
         ("fire at most 3 times", "`times(fire)` counts how often `fire` begins: steps in a row count once"),
         (
             "avoid fire and spray for more than 0.3 s",
-            "the time is 0 s at the first step, so `time_holding(fire and spray) > 0.3 s` needs 5 steps in a row",
+            "`time_holding(fire and spray) > 0.3 s` needs 5 steps in a row, and its time is 0 s at the first of them; "
+            "`time_holding(fire and spray) > 0.2 s` needs 4",
         ),
         ("when fire then spray until boss_dead", "write `weak_until` for `until` if play may end before `boss_dead`"),
     ],

@@ -12,10 +12,15 @@ from tltlc.grammar.builder import Builder
 from tltlc.grammar.lexer import tokenize
 from tltlc.grammar.mistakes.declared_names import DeclaredNames
 from tltlc.grammar.tables import load
-from tltlc.grammar.tree import BinaryExpr, CallExpr, Declaration, Expr, NumberExpr
+from tltlc.grammar.tree import BinaryExpr, CallExpr, Declaration, Expr, NumberExpr, Unary
 from tltlc.grammar.walk import expressions, parts
 
 _SECONDS: Final = {"ms": 0.001, "s": 1.0, "min": 60.0, "h": 3600.0}
+_BEGINNINGS: Final = (
+    "begin", "start", "becom", "turn", "enter", "rise", "rising", "fall", "drop", "goes", "change", "each", "every",
+    "time", "leave", "get", "end", "stop",
+)  # fmt: skip
+"""Words about a moment, which a state that lasts has only one of."""
 _MOST_STEPS: Final = 100
 """With more steps, one more or less is hardly noticed."""
 
@@ -30,22 +35,35 @@ def notes(clauses: str, names: DeclaredNames, typed: str) -> tuple[str, ...]:
         return ()
     written = (part for spec in declarations for part in expressions(spec))
     all_notes = (note for part in written for note in _notes(part, source, names.step_s))
-    return tuple(dict.fromkeys(note for note, word in all_notes if word not in typed))
+    return tuple(dict.fromkeys(note for note, words in all_notes if not any(word in typed.lower() for word in words)))
 
 
-def _notes(expression: Expr, source: SourceFile, step_s: float) -> Iterator[tuple[str, str]]:
-    """Yield each note of an expression, and the word or function that it is about."""
+def _notes(expression: Expr, source: SourceFile, step_s: float) -> Iterator[tuple[str, tuple[str, ...]]]:
+    """Yield each note of an expression, and the words with which a writer has said so already."""
     for part in parts(expression):
         if isinstance(part, CallExpr) and part.name == "times":
             inner = source.slice(part.arguments[0].span)
-            yield f"`{source.slice(part.span)}` counts how often `{inner}` begins: steps in a row count once", "times("
+            yield (
+                f"`{source.slice(part.span)}` counts how often `{inner}` begins: steps in a row count once",
+                ("times(",),
+            )
+        elif isinstance(part, Unary) and part.op == "begins":
+            inner = source.slice(part.operand.span)
+            yield f"`begins {inner}` holds only at the first step of `{inner}`, and not at those after it", _BEGINNINGS
+        elif isinstance(part, Unary) and part.op == "G" and part.bound is not None and part.bound.words:
+            steps = _steps(part.bound.high, step_s)
+            if 1 < steps <= _MOST_STEPS:
+                yield (
+                    f"`{source.slice(part.span)}` asks for {ceil(steps)} steps, the present one among them",
+                    ("always", "G["),
+                )
         elif isinstance(part, BinaryExpr) and part.op == "U":
             end = source.slice(part.right.span)
-            yield f"write `weak_until` for `until` if play may end before `{end}`", "weak_until"
+            yield f"write `weak_until` for `until` if play may end before `{end}`", ("weak_until",)
         elif isinstance(part, BinaryExpr) and part.op in (">", ">=") and _is_held(part.left):
             note = _of_time(part, source, step_s)
             if note:
-                yield note, "time_holding"
+                yield note, ("time_holding",)
 
 
 def _is_held(expression: Expr) -> bool:
@@ -53,12 +71,38 @@ def _is_held(expression: Expr) -> bool:
 
 
 def _of_time(comparison: BinaryExpr, source: SourceFile, step_s: float) -> str:
-    """Return how many steps in a row take a time, which is 0 s at the first of them."""
+    """Return how many steps in a row take a time, which is 0 s at the first of them, and the time of one step less."""
     limit = comparison.right
-    if not isinstance(limit, NumberExpr) or limit.unit not in _SECONDS or not step_s:
+    steps = _steps(limit, step_s) if isinstance(limit, NumberExpr) else 0.0
+    if not steps:
         return ""
-    steps = round(limit.value * _SECONDS[limit.unit] / step_s, 6)
     number = (ceil(steps) if comparison.op == ">=" else floor(steps) + 1) + 1
     if number > _MOST_STEPS:
         return ""
-    return f"the time is 0 s at the first step, so `{source.slice(comparison.span)}` needs {number} steps in a row"
+    needed = (
+        f"`{source.slice(comparison.span)}` needs {number} steps in a row, and its time is 0 s at the first of them"
+    )
+    if number < 3:
+        return needed
+    left = source.slice(comparison.left.span)
+    less = f"{left} {comparison.op} {_shorter(number, comparison.op, step_s)} s"
+    return f"{needed}; `{less}` needs {number - 1}"
+
+
+def _steps(time: NumberExpr, step_s: float) -> float:
+    """Return how many steps a time takes; 0 for a number of steps, and if the clock does not say it."""
+    return round(time.value * _SECONDS[time.unit] / step_s, 6) if time.unit in _SECONDS and step_s else 0.0
+
+
+def _shorter(number: int, op: str, step_s: float) -> str:
+    """Return the seconds of the comparison that needs ``number - 1`` steps, with as few digits as tell them apart."""
+    least, most = (number - 3) * step_s, (number - 2) * step_s
+    for digits in range(10):
+        scale = 10**digits
+        at_most = floor(round(most * scale, 6)) / scale
+        at_least = ceil(round(least * scale, 6)) / scale
+        if op == ">=" and at_most > least:
+            return f"{at_most:.{digits}f}"
+        if op == ">" and at_least < most:
+            return f"{at_least:.{digits}f}"
+    return f"{most if op == '>=' else least}"

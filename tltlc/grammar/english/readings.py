@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from functools import lru_cache
 from importlib.util import find_spec
 from itertools import islice, product
@@ -10,9 +10,12 @@ from typing import TYPE_CHECKING, Any, Final
 
 from tltlc.core.record import record
 from tltlc.grammar.english.events import Crossing
+from tltlc.grammar.english.forms import Form, Part, forms
 from tltlc.grammar.english.phrases import grammar_text
 from tltlc.grammar.english.rules import Reading, Rules
-from tltlc.grammar.english.terminals import terms
+from tltlc.grammar.english.terminals import UNKNOWN, Term, known_terms, terms
+from tltlc.grammar.mistakes.sentences.states import State
+from tltlc.grammar.mistakes.sentences.validity import is_valid
 from tltlc.grammar.mistakes.sentences.words import Words
 
 if TYPE_CHECKING:
@@ -20,6 +23,14 @@ if TYPE_CHECKING:
 
 _MOST_READINGS: Final = 3
 """The most readings that a help names."""
+_LONGEST_PART: Final = 12
+"""The most terminals of a condition in a sentence that is not understood."""
+_FIRST: Final = ("BOOL", "ENUM", "INT", "REAL", "PREVIOUS_ENUM", "_LPAR")
+"""The terminals with which such a condition begins."""
+_EMPTY: Final = frozenset("it he she they we you your my has have had to do does did see so just will would".split())
+"""Words that say nothing by themselves."""
+_CONTENT: Final = frozenset((*_FIRST, UNKNOWN, "VALUE", "SIGN", "UNIT", "TIME_UNIT"))
+"""The terminals that a sentence which is understood has in conditions and times alone."""
 _MOST: Final = 64
 """The most ways in which the parts of one phrase are put together."""
 
@@ -50,6 +61,54 @@ def sentence(words: Words) -> Sentence:
     return Sentence((Reading(tuple(clause for line in sentences for clause in line.readings[0].clauses)),))
 
 
+def sentence_forms(words: Words) -> tuple[Form, ...]:
+    """Return the forms of clauses that a sentence without a reading may mean; none without lark."""
+    if find_spec("lark") is None:
+        return ()
+    _, vocabulary = _parser()
+    terminals = [term for term in known_terms(words, vocabulary) if term.text not in _EMPTY]
+    rules = Rules(words.names)
+    if any(term.kind == UNKNOWN or (term.kind == "BOOL" and term.declared is None) for term in terminals):
+        return ()
+    parts: list[Part] = []
+    at = 0
+    while at < len(terminals):
+        state, stop = _condition(terminals, at, rules)
+        if state is not None:
+            parts.append(state)
+        elif [term.kind for term in terminals[at : at + 2]] == ["NUMBER", "TIME_UNIT"]:
+            parts.append(rules.duration(*terminals[at : at + 2]))
+            stop = at + 2
+        else:
+            parts.append(terminals[at])
+        at = stop
+    if any(isinstance(part, Term) and part.kind in _CONTENT for part in parts):
+        return ()  # no form would say all of it
+    return tuple(form for form in forms(parts) if is_valid((form.clause,)))
+
+
+def _condition(terminals: Sequence[Term], start: int, rules: Rules) -> tuple[State | None, int]:
+    """Return the longest condition that begins at an index, and where it ends; else None and the next index."""
+    from lark import Token, Tree
+    from lark.exceptions import UnexpectedInput
+
+    parser, _ = _parser()
+    if terminals[start].kind not in _FIRST:
+        return None, start + 1
+    for stop in range(min(len(terminals), start + _LONGEST_PART), start, -1):
+        if terminals[stop - 1].kind in (UNKNOWN, "_COMMA"):
+            continue
+        try:
+            tree = parser.parse([Token(term.kind, term) for term in terminals[start:stop]], start="part")
+        except UnexpectedInput:
+            continue
+        assert isinstance(tree, Tree)
+        for state in _values(tree.children[0], rules):
+            if isinstance(state, State):
+                return state, stop
+    return None, start + 1
+
+
 def _sentence(words: Words) -> Sentence:
     from lark import Token, Tree
     from lark.exceptions import UnexpectedInput
@@ -59,7 +118,7 @@ def _sentence(words: Words) -> Sentence:
     if not terminals:
         return Sentence()
     try:
-        tree = parser.parse([Token(term.kind, term) for term in terminals])
+        tree = parser.parse([Token(term.kind, term) for term in terminals], start="start")
     except UnexpectedInput:
         return Sentence()
     assert isinstance(tree, Tree)
@@ -88,7 +147,9 @@ def _parser() -> tuple[Lark, Mapping[str, str]]:
             return iter(data)
 
     structure = Path(__file__).with_name("sentences.lark").read_text(encoding="utf-8")
-    parser = Lark(f"{structure}\n{grammar_text()}\n", parser="earley", lexer=Terms, ambiguity="explicit")
+    parser = Lark(
+        f"{structure}\n{grammar_text()}\n", parser="earley", lexer=Terms, ambiguity="explicit", start=["start", "part"]
+    )
     words = {terminal.pattern.value: terminal.name for terminal in parser.terminals if terminal.pattern is not None}
     return parser, words
 

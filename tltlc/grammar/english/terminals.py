@@ -22,6 +22,8 @@ _COUNTS: Final = ("times",)
 _NUMBERS: Final = ("previous", "initial", "highest", "lowest", "time_since", "time_holding", "abs", "min", "max")
 _LETTERS: Final = {"Y": "previously", "O": "once", "H": "historically", "S": "since"}
 """Maps the letters of logic for the past to words."""
+UNKNOWN: Final = "UNKNOWN"
+"""The kind of a word that no sentence of the grammar has."""
 _PREVIOUS: Final = ("previous", "prev")
 
 
@@ -39,15 +41,16 @@ def terms(words: Words, vocabulary: Mapping[str, str]) -> list[Term] | None:
 
     ``vocabulary`` maps the English words of the grammar to their terminals.
     """
-    terminals: list[Term] = []
-    for term in _terms(words, vocabulary):
-        if term is None:
-            return None
-        terminals.append(term)
-    return terminals
+    found = known_terms(words, vocabulary)
+    return None if any(term.kind == UNKNOWN for term in found) else found
 
 
-def _terms(words: Words, vocabulary: Mapping[str, str]) -> Iterator[Term | None]:
+def known_terms(words: Words, vocabulary: Mapping[str, str]) -> list[Term]:
+    """Return the terminals of words; those that have no meaning in a sentence are ``UNKNOWN``."""
+    return list(_terms(words, vocabulary))
+
+
+def _terms(words: Words, vocabulary: Mapping[str, str]) -> Iterator[Term]:
     at = 0
     while at < len(words):
         word, start = words[at], at
@@ -56,7 +59,7 @@ def _terms(words: Words, vocabulary: Mapping[str, str]) -> Iterator[Term | None]
             yield Term(vocabulary[letter], letter)
         elif word.is_name:
             at = call_end(words, start)
-            yield _name(words[start:at])
+            yield _name(words[start:at]) or Term(UNKNOWN, words[start:at].text)
         elif word.type in _SIGNS and word.text not in ("min", "max"):
             if word.type == "EQUAL" and at < len(words) and words[at].type == "MORE":
                 at += 1
@@ -76,7 +79,7 @@ def _terms(words: Words, vocabulary: Mapping[str, str]) -> Iterator[Term | None]
         elif word.text in vocabulary:
             yield Term(vocabulary[word.text], word.text)
         elif word.text not in DROPPED:
-            yield None
+            yield Term(UNKNOWN, word.text)
 
 
 def _unit(word: str) -> str:

@@ -12,7 +12,7 @@ from tltlc.grammar import lalr
 from tltlc.grammar.builder import Builder
 from tltlc.grammar.english.clauses import plain_text
 from tltlc.grammar.english.notes import notes
-from tltlc.grammar.english.readings import sentence
+from tltlc.grammar.english.readings import sentence, sentence_forms
 from tltlc.grammar.english.rules import Reading
 from tltlc.grammar.lexer import END, Token, tokenize
 from tltlc.grammar.mistakes.clauses import is_own_line
@@ -119,7 +119,26 @@ def _with_reading(
         return known
     if found.readings and " ".join(found.readings[0].clauses) != words.text:
         return _with_readings(failure, known, found.readings)
-    return replace(known, help=found.limit, fixes=()) if found.limit and not found.readings else known
+    if found.limit and not found.readings:
+        return replace(known, help=found.limit, fixes=())
+    return known if is_mended or found.readings else _with_forms(failure, known, words)
+
+
+def _with_forms(failure: ParseFailure, diagnostic: Diagnostic, words: Words) -> Diagnostic:
+    """Return the error for a sentence that is not understood with the forms that it may mean in the help."""
+    is_general = not diagnostic.fixes and diagnostic.code in ("TLT0101", "TLT0107")
+    if not is_general or failure.clock_varies or _is_particular(failure, diagnostic.help):
+        return diagnostic
+    found = sentence_forms(words) or sentence_forms(with_names(words))
+    listed = "".join(f"\n`{form.clause}`: {form.says}" for form in found)
+    return replace(diagnostic, help=f"write one of these, if it says what you mean:{listed}") if found else diagnostic
+
+
+def _is_particular(failure: ParseFailure, help_: str | None) -> bool:
+    """Whether a help is about this sentence: it has a name of the file, in a clause that can be parsed or in a part."""
+    names = declared_names(failure.source).names
+    texts = [text for text in (help_ or "").split("`")[1::2] if names.keys() & {t.text for t in tokenize(text).tokens}]
+    return any(text.split(" ")[0] not in _KEYWORDS or is_valid((text,)) for text in texts)
 
 
 def _is_foreign(fix: Fix, failure: ParseFailure) -> bool:

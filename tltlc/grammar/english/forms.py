@@ -1,0 +1,199 @@
+"""Forms of clauses for the conditions of a sentence that has no reading, each with what it says."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import pairwise
+from typing import Final
+
+from tltlc.core.record import record
+from tltlc.grammar.english.quantities import Duration
+from tltlc.grammar.english.terminals import Term
+from tltlc.grammar.mistakes.sentences.states import ATOM, State
+
+_MOST_FORMS: Final = 4
+"""The most forms that a help names."""
+_CONDITIONAL: Final = frozenset("if when whenever while during once after every each for on upon given at".split())
+"""Words before the condition of a rule."""
+_BEHIND: Final = frozenset("if when whenever while during once after unless until till since only".split())
+"""Words between an answer and the condition of its rule."""
+_PAIRED: Final = frozenset("between both either neither exactly precisely to".split())
+"""Words whose meaning no form has."""
+_MODALS: Final = ("must", "should", "may", "can", "will", "shall")
+_NEGATIONS: Final = frozenset("no not never avoid without cannot can't don't mustn't nor".split())
+
+
+@record
+class Form:
+    """A clause, and what it says of the conditions in it."""
+
+    clause: str
+    says: str
+
+
+@record
+class _Pattern:
+    """A form with places for conditions, a time ``T`` and a number ``n``, and the words of sentences that it may suit.
+
+    ``t`` is the condition of a rule, ``r`` its answer, and ``p`` the answer without a word such as
+    `never` before it; ``a``, ``b`` and ``c`` are conditions in their order.
+    """
+
+    clause: str
+    says: str
+    cues: str
+
+
+_ONE: Final = (
+    _Pattern("reach {a}", "{a} at some step", "reach get find at some point be finish end"),
+    _Pattern("keep {a}", "{a} at every step", "keep always must stay stays be all only"),
+    _Pattern("avoid {p}", "{p} at no step", "avoid never no not without cannot can must"),
+    _Pattern("keep {a} implies always {a}", "from the first {a} on, {a} at every step", "once stays stay again ever"),
+    _Pattern("require eventually always {a}", "{a} at the last step", "end last finish finally final"),
+)
+_ONE_IN_TIME: Final = (
+    _Pattern("require eventually within {T} {a}", "{a} at some step of the first {T}",
+             "within in by before reach under"),
+    _Pattern("reach time_holding({a}) >= {T}", "{a} for {T} in a row, once", "reach for hold holds stay survive"),
+    _Pattern("avoid time_holding({p}) > {T}", "{p} never for more than {T} in a row",
+             "avoid never no more longer most max than exceed"),
+    _Pattern("keep begins {a} implies always for {T} {a}", "{a} lasts at least {T} each time",
+             "least lasts last each every stays stay for once"),
+    _Pattern("keep time_holding(not {a}) <= {T}", "{a} again at most {T} after its last step",
+             "every each least per again"),
+    _Pattern("require always for {T} {a}", "{a} at every step of the first {T}", "first start for beginning"),
+    _Pattern("avoid (begins {p}) then within {T} (begins {p})", "two beginnings of {p} are more than {T} apart",
+             "between two twice again cooldown wait apart"),
+)  # fmt: skip
+_ONE_COUNTED: Final = (
+    _Pattern("reach times({a}) >= {n}", "{a} begins at least {n} times", "reach least least collect do get must"),
+    _Pattern("keep times({p}) <= {n}", "{p} begins at most {n} times", "most more never avoid max only up than keep"),
+)
+_TWO: Final = (
+    _Pattern("keep {t} implies {r}", "at each step with {t}, {r}",
+             "when if while whenever during then means implies only must at"),
+    _Pattern("keep {t} implies eventually {r}", "each {t} is followed by {r}, at that step or later",
+             "when if whenever after then once follow followed eventually must later"),
+    _Pattern("keep {t} implies always {r}", "from the first {t} on, {r} at every step",
+             "after once from stays stay always never ever no"),
+    _Pattern("keep {p} implies once {t}", "{p} only after {t}, or at the same step",
+             "only before after first without needs requires until not"),
+    _Pattern("require {r} weak_until {t}", "{r} at every step before {t}, which need not come", "until till before"),
+    _Pattern("require {r} until {t}", "{r} at every step before {t}, which must come", "until till"),
+    _Pattern("keep {r} or {t}", "{r} at each step without {t}", "unless except"),
+    _Pattern("reach {a} then {b}", "{a} at some step, and {b} at a later one", "reach then after get and finally"),
+    _Pattern("reach {a} and {b}", "both at one step", "reach and with while get"),
+)  # fmt: skip
+_TWO_IN_TIME: Final = (
+    _Pattern("keep {t} implies eventually within {T} {r}", "each {t} is answered by {r} at most {T} later",
+             "when if whenever after within in then must later by under each every"),
+    _Pattern("keep {p} implies once within {T} {t}", "{p} only at most {T} after {t}",
+             "only ago last before since earlier"),
+    _Pattern("reach {a} then within {T} {b}", "{a} at some step, and {b} at most {T} later", "reach then within get"),
+    _Pattern("keep {t} implies always for {T} {r}", "from each step with {t} on, {r} for {T}",
+             "for stays stay keep lasts after no never avoid when"),
+    _Pattern("keep begins {t} implies always for {T} {r}", "from each beginning of {t} on, {r} for {T}",
+             "for stays stay keep lasts after no never avoid starts begins"),
+    _Pattern("keep time_holding({t}) >= {T} implies {r}", "once {t} has held for {T} in a row, {r}",
+             "for when if whenever been longer than after"),
+    _Pattern("keep {p} implies time_holding({t}) >= {T}", "{p} only when {t} has held for {T} in a row",
+             "only for unless until after without been"),
+    _Pattern("keep {t} implies not time_holding({p}) > {T}", "while {t}, {p} never for more than {T} in a row",
+             "while during never more longer than most avoid"),
+)  # fmt: skip
+_TWO_COUNTED: Final = (
+    _Pattern("keep {t} implies times({r}) >= {n}", "at each step with {t}, {r} has begun at least {n} times",
+             "when if before least only after"),
+    _Pattern("keep {t} implies times({r}) <= {n}", "at each step with {t}, {r} has begun at most {n} times",
+             "when if most more never than before"),
+    _Pattern("keep times({t}) >= {n} implies {r}", "once {t} has begun {n} times, {r} at every step",
+             "after once when times if"),
+)  # fmt: skip
+_THREE: Final = (
+    _Pattern("reach {a} then {b} then {c}", "one after the other", "reach then"),
+    _Pattern("keep {t} implies ({r} weak_until {c})", "from each {t} on, {r} at every step before {c}",
+             "until till between"),
+    _Pattern("keep begins {t} implies ({r} weak_until {c})",
+             "from each beginning of {t} on, {r} at every step before {c}",
+             "until till between"),
+    _Pattern("keep {a} implies (not {c} since {b})", "{a} only if {b} has been since the last {c}",
+             "since"),
+    _Pattern("keep {t} and {c} implies {r}", "at each step with {t} and {c}, {r}",
+             "while during unless"),
+)  # fmt: skip
+PATTERNS: Final[Mapping[tuple[int, bool, bool], Sequence[_Pattern]]] = {
+    (1, False, False): _ONE,
+    (1, True, False): _ONE_IN_TIME,
+    (1, False, True): _ONE_COUNTED,
+    (2, False, False): _TWO,
+    (2, True, False): _TWO_IN_TIME,
+    (2, False, True): _TWO_COUNTED,
+    (3, False, False): _THREE,
+}
+"""Maps the number of conditions, and whether there is a time and a count, to the forms."""
+
+Part = State | Duration | Term
+"""A part of a sentence: a condition, a time, or another word."""
+
+
+def forms(parts: Sequence[Part]) -> tuple[Form, ...]:
+    """Return the forms that a sentence may mean, the likeliest first; () if its parts suit none."""
+    conditions = [at for at, part in enumerate(parts) if isinstance(part, State)]
+    durations = [part for part in parts if isinstance(part, Duration)]
+    words = [part.text for part in parts if isinstance(part, Term)]
+    numbers = [text for text in map(_count, _with_next(words)) if text]
+    key = (len(conditions), bool(durations), bool(numbers))
+    if len([part for part in parts if isinstance(part, Term) and part.kind == "NUMBER"]) > len(numbers):
+        return ()
+    if key not in PATTERNS or len(durations) > 1 or len(numbers) > 1 or not set(words).isdisjoint(_PAIRED):
+        return ()
+    slots = _slots(parts, conditions)
+    texts = {name: state.at(ATOM) for name, state in slots.items()}
+    texts.update(T=durations[0].text if durations else "", n=numbers[0] if numbers else "")
+    cues = set(words)
+    ranked = sorted(PATTERNS[key], key=lambda pattern: -len(cues & set(pattern.cues.split())))
+    fitting = [pattern for pattern in ranked if cues & set(pattern.cues.split())] or PATTERNS[key][:3]
+    quoted = {name: f"`{text}`" if name not in "Tn" else text for name, text in texts.items()}
+    found = (Form(p.clause.format(**texts), p.says.format(**quoted)) for p in fitting)
+    return tuple({form.clause: form for form in found}.values())[:_MOST_FORMS]
+
+
+def _slots(parts: Sequence[Part], conditions: Sequence[int]) -> dict[str, State]:
+    """Return the conditions by the letters of their places."""
+    states = {at: _signed(parts, at) for at in conditions}
+    plain = {at: part for at in conditions if isinstance(part := parts[at], State)}
+    slots = dict(zip("abc", states.values(), strict=False))
+    if len(conditions) < 2:
+        return {**slots, "p": plain[conditions[0]]}
+    first, second = conditions[:2]
+    between = {part.text for part in parts[first:second] if isinstance(part, Term)}
+    before = {part.text for part in parts[:first] if isinstance(part, Term)}
+    is_behind = bool(between & _BEHIND) and not before & _CONDITIONAL
+    event, answer = (second, first) if is_behind else (first, second)
+    slots.update(t=states[event], r=states[answer], p=plain[answer])
+    return slots
+
+
+def _signed(parts: Sequence[Part], at: int) -> State:
+    """Return the condition at an index; its opposite if `never` stands before it, or `must not` behind it."""
+    state, before = parts[at], _word(parts, at - 1)
+    assert isinstance(state, State)
+    behind = _word(parts, at + 2) if _word(parts, at + 1) in _MODALS else _word(parts, at + 1)
+    return state.negated() if before in _NEGATIONS or behind in ("not", "never") else state
+
+
+def _word(parts: Sequence[Part], at: int) -> str:
+    """Return the word at an index; "" for a condition, a time, and outside the sentence."""
+    part = parts[at] if 0 <= at < len(parts) else None
+    return part.text if isinstance(part, Term) else ""
+
+
+def _with_next(words: Sequence[str]) -> Iterator[tuple[str, str]]:
+    yield from pairwise([*words, ""])
+
+
+def _count(pair: tuple[str, str]) -> str:
+    """Return the number of `3 times` and `twice`; "" for other words."""
+    word, following = pair
+    often = {"once": "", "twice": "2", "thrice": "3"}
+    return word if word.isdecimal() and following in ("times", "time", "x") else often.get(word, "")
