@@ -48,7 +48,8 @@ from tltlc.grammar.mistakes.renaming import word_of_the_past
 from tltlc.grammar.mistakes.rephrasing import formula_stop, text_of
 from tltlc.grammar.mistakes.responses import colon_after_event, response_in_english
 from tltlc.grammar.mistakes.rules_in_words import rule_in_words
-from tltlc.grammar.mistakes.sentences.reading import ReadAgain, sentence_help
+from tltlc.grammar.mistakes.sentences.help import sentence_help
+from tltlc.grammar.mistakes.sentences.reading import ReadAgain
 from tltlc.grammar.mistakes.unknown_signs import unknown_sign
 from tltlc.grammar.tables import load
 

@@ -1,4 +1,4 @@
-"""Read a clause that cannot be parsed as an English sentence, and suggest the clauses that say the same."""
+"""Read a clause that cannot be parsed by patterns of English sentences, and suggest the clauses that say the same."""
 
 from __future__ import annotations
 
@@ -10,14 +10,9 @@ from tltlc.core.source import SourceFile, Span
 from tltlc.diagnostics.diagnostic import Diagnostic, Edit, Fix, replacement_fix
 from tltlc.grammar import lalr
 from tltlc.grammar.builder import Builder
-from tltlc.grammar.english.clauses import plain_text
-from tltlc.grammar.english.notes import notes
-from tltlc.grammar.english.readings import sentence, sentence_forms
-from tltlc.grammar.english.rules import Reading
 from tltlc.grammar.lexer import END, Token, tokenize
 from tltlc.grammar.mistakes.clauses import is_own_line
 from tltlc.grammar.mistakes.declared_names import declared_names
-from tltlc.grammar.mistakes.english_rewrite import REAL_TIME
 from tltlc.grammar.mistakes.parse_failure import ParseFailure
 from tltlc.grammar.mistakes.rephrasing import span_of
 from tltlc.grammar.mistakes.sentences.calls import with_own_calls, without_braces
@@ -34,7 +29,6 @@ from tltlc.grammar.mistakes.sentences.two_readings import both_readings
 from tltlc.grammar.mistakes.sentences.validity import is_valid
 from tltlc.grammar.mistakes.sentences.vocabulary import ENGLISH, FILLERS, NEVER, PROHIBITIONS, SUBJECTS
 from tltlc.grammar.mistakes.sentences.words import Words, phrases, words_of
-from tltlc.grammar.past_words import SYNONYMS
 from tltlc.grammar.tables import load
 
 _JOINTS: Final = phrases("and", ",", ", and", "but", ", but", ";", ".", "without", "while")
@@ -45,126 +39,18 @@ _CLEAR: Final = phrases("infinitely often")
 """Words of sentences whose help in the language would miss what is meant."""
 _HEADINGS: Final = ("scenario", "feature", "background", "example")
 _FORMS: Final = "begin with what must be: `reach a`, `keep a`, `avoid a`, `keep a implies b`"
-_LONGEST: Final = 60
+LONGEST: Final = 60
 """The most tokens of a sentence; a longer clause is hardly one."""
 _LONGEST_CHECKED: Final = 500
 """Fewer tokens than these are read again with the fix of their error."""
-_ENGLISH_ALONE: Final = phrases(
-    "since", "requires", "needs", "falls below", "drops below", "goes below", "rises above", "goes above"
-)
-"""Words whose meaning in English is not that of an operator, or more than that of a comparison."""
-_UNITS: Final = frozenset((*REAL_TIME, "step", "steps"))
-_KEYWORDS: Final = ("reach", "keep", "avoid", "require", "limit")
+KEYWORDS: Final = ("reach", "keep", "avoid", "require", "limit")
 
 
 ReadAgain = Callable[[SourceFile, Sequence[Token], lalr.UnexpectedTokenError, str], Diagnostic]
 """Returns the error for a piece of a text, as :func:`~tltlc.grammar.mistakes.messages.unexpected_token` does."""
 
 
-def sentence_help(
-    failure: ParseFailure,
-    diagnostic: Diagnostic,
-    *,
-    is_explained: bool,
-    read_again: ReadAgain | None,
-    reads_sentences: bool,
-) -> Diagnostic:
-    """Return the error for a clause with the fix that its English sentence suggests, and what to know of that fix.
-
-    ``is_explained`` says that the error is about a mistake in a clause of the language. Without
-    ``reads_sentences``, patterns alone make the fix.
-    """
-    read = _with_reading if reads_sentences else _by_patterns
-    helped = read(failure, diagnostic, is_explained=is_explained, read_again=read_again)
-    piece = span_of(failure.tokens[:-1]) if len(failure.tokens) > 1 else None
-    edits = helped.fixes[0].edits if helped.fixes else ()
-    if piece is None or len(edits) != 1 or edits[0].span != piece or len(failure.tokens) > _LONGEST:
-        return helped
-    known = notes(edits[0].text, declared_names(failure.source), failure.source.slice(piece))
-    return replace(helped, help="; ".join((*([helped.help] if helped.help else []), *known))) if known else helped
-
-
-def _with_reading(
-    failure: ParseFailure, diagnostic: Diagnostic, *, is_explained: bool, read_again: ReadAgain | None
-) -> Diagnostic:
-    """Return the error for a clause with the fix that its English sentence suggests, if it has one reading.
-
-    A sentence with several readings gets them in the help, and no fix. ``is_explained`` says that the error is
-    about a mistake in a clause of the language.
-    """
-    known = _by_patterns(failure, diagnostic, is_explained=is_explained, read_again=read_again)
-    if failure.start != "clause" or failure.tokens[-1].type != END or not 2 < len(failure.tokens) <= _LONGEST:
-        return known
-    if not (failure.tokens[0].text in _KEYWORDS or is_own_line(failure)):
-        return known
-    if known.code == "TLT0110" and not known.fixes:
-        return known  # the help says what to declare
-    is_mended = bool(known.fixes) and _is_mended(failure, known.fixes[0])
-    words = _words(failure)
-    is_english = words.find(_ENGLISH_ALONE) is not None
-    if not is_english and (
-        (is_mended and not _is_foreign(known.fixes[0], failure)) or _has_readings(failure, known.help or "")
-    ):
-        return known
-    if not words or words.word(0) == "require" or (is_imperative(words) and words.word(0) not in _KEYWORDS):
-        return known
-    found = sentence(words)
-    if not found.readings and not found.limit:
-        found = sentence(with_names(words))
-    if (
-        is_mended
-        and not is_english
-        and (len(found.readings) != 1 or _is_same(found.readings[0], failure, known.fixes[0]))
-    ):
-        return known
-    if found.readings and " ".join(found.readings[0].clauses) != words.text:
-        return _with_readings(failure, known, found.readings)
-    if found.limit and not found.readings:
-        return replace(known, help=found.limit, fixes=())
-    return known if is_mended or found.readings else _with_forms(failure, known, words)
-
-
-def _with_forms(failure: ParseFailure, diagnostic: Diagnostic, words: Words) -> Diagnostic:
-    """Return the error for a sentence that is not understood with the forms that it may mean in the help."""
-    is_general = not diagnostic.fixes and diagnostic.code in ("TLT0101", "TLT0107")
-    if not is_general or failure.clock_varies or _is_particular(failure, diagnostic.help):
-        return diagnostic
-    found = sentence_forms(words) or sentence_forms(with_names(words))
-    listed = "".join(f"\n`{form.clause}`: {form.says}" for form in found)
-    return replace(diagnostic, help=f"write one of these, if it says what you mean:{listed}") if found else diagnostic
-
-
-def _is_particular(failure: ParseFailure, help_: str | None) -> bool:
-    """Whether a help is about this sentence: it has a name of the file, in a clause that can be parsed or in a part."""
-    names = declared_names(failure.source).names
-    texts = [text for text in (help_ or "").split("`")[1::2] if names.keys() & {t.text for t in tokenize(text).tokens}]
-    return any(text.split(" ")[0] not in _KEYWORDS or is_valid((text,)) for text in texts)
-
-
-def _is_foreign(fix: Fix, failure: ParseFailure) -> bool:
-    """Whether a fix has words of other languages, at which the next error would be: `==` of an enum, `prev(x)`."""
-    names = declared_names(failure.source).names
-    tokens = [token for edit in fix.edits for token in tokenize(edit.text).tokens]
-    return any(
-        token.type in ("EQUALS", "UNEQUAL") or (token.text in SYNONYMS and token.text not in names) for token in tokens
-    )
-
-
-def _is_same(reading: Reading, failure: ParseFailure, fix: Fix) -> bool:
-    """Whether a fix leaves the clauses of a reading, apart from blanks and brackets."""
-    return plain_text(" ".join(reading.clauses)) == plain_text(_mended(failure, fix))
-
-
-def _has_readings(failure: ParseFailure, help_: str) -> bool:
-    """Whether a help names two forms in the words of the file; clauses among them can be parsed."""
-    names = declared_names(failure.source).names
-    texts = {text for text in help_.split("`")[1::2] if not text.isidentifier()}
-    texts = {text for text in texts if text.split(" ")[0] not in _KEYWORDS or is_valid((text,))}
-    used = [{token.text for token in tokenize(text).tokens if token.type == "NAME"} - _UNITS for text in texts]
-    return sum(bool(known) and known <= names.keys() for known in used) > 1
-
-
-def _by_patterns(
+def by_patterns(
     failure: ParseFailure, diagnostic: Diagnostic, *, is_explained: bool, read_again: ReadAgain | None
 ) -> Diagnostic:
     """Return the error for a clause with the fix that its English sentence suggests, if it has one reading.
@@ -174,7 +60,7 @@ def _by_patterns(
     """
     if failure.start != "clause" or failure.tokens[-1].type != END:
         return diagnostic
-    if len(failure.tokens) > _LONGEST:
+    if len(failure.tokens) > LONGEST:
         is_end = (
             len(failure.tokens) < _LONGEST_CHECKED
             and diagnostic.fixes
@@ -187,14 +73,14 @@ def _by_patterns(
         return replace(diagnostic, help="write `//` before it: a heading is a comment", fixes=(fix,))
     if not diagnostic.fixes and (fix_ := logic_fix(failure) or equality_fix(failure)):
         return replace(diagnostic, help=f"write `{fix_.edits[0].text}`", fixes=(fix_,))
-    words = _words(failure)
-    if words.word(0) == "require" or not (failure.tokens[0].text in _KEYWORDS or is_own_line(failure)):
+    words = sentence_words(failure)
+    if words.word(0) == "require" or not (failure.tokens[0].text in KEYWORDS or is_own_line(failure)):
         return diagnostic
     if not words.find(FILLERS):
         is_spelt = (with_names(words).text != words.text or _compares_bools(words)) and _read(words) is not None
-        if diagnostic.fixes and _is_mended(failure, diagnostic.fixes[0]) and not is_spelt:
+        if diagnostic.fixes and is_mended(failure, diagnostic.fixes[0]) and not is_spelt:
             return diagnostic
-        if not diagnostic.fixes and failure.tokens[0].text in _KEYWORDS and is_explained:
+        if not diagnostic.fixes and failure.tokens[0].text in KEYWORDS and is_explained:
             is_spelt = with_names(words).text != words.text
             is_clear = (
                 is_spelt
@@ -209,7 +95,7 @@ def _by_patterns(
     if clauses is None and diagnostic.fixes and not _leads_on(failure, diagnostic.fixes[0], read_again):
         diagnostic = replace(diagnostic, help=diagnostic.help or _FORMS, fixes=())
     span = span_of(failure.tokens[:-1])
-    if clauses is None and not diagnostic.fixes and failure.tokens[0].text not in _KEYWORDS:
+    if clauses is None and not diagnostic.fixes and failure.tokens[0].text not in KEYWORDS:
         return replace(diagnostic, help=both_readings(words) or both_readings(with_names(words)) or diagnostic.help)
     if clauses is None or "//" in failure.source.slice(span):
         return diagnostic
@@ -230,32 +116,12 @@ def _by_patterns(
     )
 
 
-def _with_readings(failure: ParseFailure, diagnostic: Diagnostic, found: tuple[Reading, ...]) -> Diagnostic:
-    """Return the error with the reading of a sentence as its fix, or with its readings in the help."""
-    valid = [
-        reading
-        for reading in found
-        if is_valid(reading.clauses) and not failure.lacks_fixed_clock(" ".join(reading.clauses))
-    ]
-    if not valid:
-        return diagnostic
-    texts = [" and ".join(f"`{clause}`" for clause in reading.clauses) for reading in valid]
-    if len(valid) > 1:
-        described = [f"{text} {reading.condition}".rstrip() for text, reading in zip(texts, valid, strict=True)]
-        return replace(diagnostic, help=f"write {', or '.join(described)}", fixes=())
-    span = span_of(failure.tokens[:-1])
-    indent = failure.source.text[: span.start].rpartition("\n")[2]
-    separator = f"\n{indent}" if not indent.strip() else " "
-    fix = replacement_fix(failure.source, span, separator.join(valid[0].clauses))
-    return replace(diagnostic, help=f"write {texts[0]}", fixes=(replace(fix, title=f"Write {texts[0]}"),))
-
-
 def _leads_on(failure: ParseFailure, fix: Fix, read_again: ReadAgain | None, rounds: int = 2) -> bool:
     """Whether a fix of a piece, and the fixes of what is left, lead to a text without a syntax error.
 
     Without ``read_again``, the piece is one that is read again itself; then the answer is true.
     """
-    if read_again is None or _is_mended(failure, fix):
+    if read_again is None or is_mended(failure, fix):
         return True
     piece, source = span_of(failure.tokens[:-1]), failure.source
     text, end = "", 0
@@ -299,12 +165,12 @@ def _is_change(words: Words) -> bool:
     return found is not None and (stop == len(words) or following in ("while", "during", "when", "if"))
 
 
-def _is_mended(failure: ParseFailure, fix: Fix) -> bool:
+def is_mended(failure: ParseFailure, fix: Fix) -> bool:
     """Whether a fix leaves no syntax error in the piece; always true for a fix that is not within the piece."""
     piece = span_of(failure.tokens[:-1])
     if not all(piece.start <= edit.span.start and edit.span.end <= piece.end for edit in fix.edits):
         return True
-    body = _mended(failure, fix)
+    body = mended(failure, fix)
     source = SourceFile("", f"spec s {{ {body} }}", "text")
     lexed = tokenize(source.text)
     try:
@@ -314,7 +180,7 @@ def _is_mended(failure: ParseFailure, fix: Fix) -> bool:
     return True
 
 
-def _mended(failure: ParseFailure, fix: Fix) -> str:
+def mended(failure: ParseFailure, fix: Fix) -> str:
     """Return the text of the piece after a fix."""
     piece = span_of(failure.tokens[:-1])
     text, end = "", piece.start
@@ -324,7 +190,7 @@ def _mended(failure: ParseFailure, fix: Fix) -> str:
     return text + failure.source.text[end : piece.end]
 
 
-def _words(failure: ParseFailure) -> Words:
+def sentence_words(failure: ParseFailure) -> Words:
     """Return the words of a piece of a spec, without a label before them and a stop behind them."""
     words = words_of(failure.source, declared_names(failure.source), failure.tokens[:-1], ENGLISH)
     while words and words[-1].text in (".", ";", "!") and len(words) > 1:
@@ -340,7 +206,7 @@ def _without_label(words: Words) -> Words:
     is_condition = words.word(0) in ("if", "when", "whenever", "while", "after", "once", "all", "any")
     is_label = not any(word.is_name for word in words[: found[0]])
     rest = words[found[0] + 1 :]
-    return rest if is_label or (rest.word(0) in _KEYWORDS and not is_condition) else words
+    return rest if is_label or (rest.word(0) in KEYWORDS and not is_condition) else words
 
 
 def _read(words: Words) -> Clauses | None:
@@ -355,7 +221,7 @@ def _request(words: Words) -> Clauses | None:
         states = [state_of(part) for part in named.split(phrases("and"))]
         held = [state.at(AND) for state in states if state is not None]
         return (f"reach {' and '.join(held)}",) if len(held) == len(states) == 2 else None
-    is_verb = is_imperative(words) and words.word(0) not in _KEYWORDS
+    is_verb = is_imperative(words) and words.word(0) not in KEYWORDS
     for known in (words, named) if named.text != words.text else (words,):
         clauses = (_sentence(known) if known is not words else None) or request_of(known, is_imperative=is_verb)
         if clauses is not None:
@@ -399,7 +265,7 @@ def _own_clause(words: Words) -> Clauses | None:
     """Return a clause that can be parsed as it stands."""
     if _compares_bools(words):
         return None
-    return (words.text,) if words.word(0) in _KEYWORDS and is_valid((words.text,)) else None
+    return (words.text,) if words.word(0) in KEYWORDS and is_valid((words.text,)) else None
 
 
 def _joined(words: Words) -> Clauses | None:
@@ -427,7 +293,7 @@ def _joint(words: Words) -> tuple[int, tuple[str, ...]] | None:
         at, joint = found
         following = words[at + len(joint) :].without(SUBJECTS)
         is_forbidding = bool(following.phrase(0, PROHIBITIONS))
-        begins = following.word(0) in _KEYWORDS and words.word(0) not in ("reach", "keep")
+        begins = following.word(0) in KEYWORDS and words.word(0) not in ("reach", "keep")
         if joint == ("without",) or is_forbidding or begins:
             return found
         start = at + len(joint)
@@ -436,7 +302,7 @@ def _joint(words: Words) -> tuple[int, tuple[str, ...]] | None:
 
 def _unconditional(words: Words) -> Clauses | None:
     """Return the clauses of a sentence without a condition, which could apply to the next sentence, too."""
-    if words.word(0) in _KEYWORDS:
+    if words.word(0) in KEYWORDS:
         own = _own_clause(words)
         if own is not None:
             return None if words.find(phrases("implies", "or", "until", "->")) else own

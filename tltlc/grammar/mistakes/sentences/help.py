@@ -1,0 +1,160 @@
+"""Help with a clause that cannot be parsed by the clauses that its English sentence may mean."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from tltlc.core.record import replace
+from tltlc.diagnostics.diagnostic import Diagnostic, Fix, replacement_fix
+from tltlc.grammar.english.clauses import plain_text
+from tltlc.grammar.english.notes import notes
+from tltlc.grammar.english.readings import sentence, sentence_forms
+from tltlc.grammar.english.rules import Reading
+from tltlc.grammar.lexer import END, tokenize
+from tltlc.grammar.mistakes.clauses import is_own_line
+from tltlc.grammar.mistakes.declared_names import declared_names
+from tltlc.grammar.mistakes.english_rewrite import REAL_TIME
+from tltlc.grammar.mistakes.parse_failure import ParseFailure
+from tltlc.grammar.mistakes.rephrasing import span_of
+from tltlc.grammar.mistakes.sentences.names import is_imperative, with_names
+from tltlc.grammar.mistakes.sentences.reading import (
+    KEYWORDS,
+    LONGEST,
+    ReadAgain,
+    by_patterns,
+    is_mended,
+    mended,
+    sentence_words,
+)
+from tltlc.grammar.mistakes.sentences.validity import is_valid
+from tltlc.grammar.mistakes.sentences.words import Words, phrases
+from tltlc.grammar.past_words import SYNONYMS
+
+_ENGLISH_ALONE: Final = phrases(
+    "since", "requires", "needs", "falls below", "drops below", "goes below", "rises above", "goes above"
+)
+"""Words whose meaning in English is not that of an operator, or more than that of a comparison."""
+_UNITS: Final = frozenset((*REAL_TIME, "step", "steps"))
+
+
+def sentence_help(
+    failure: ParseFailure,
+    diagnostic: Diagnostic,
+    *,
+    is_explained: bool,
+    read_again: ReadAgain | None,
+    reads_sentences: bool,
+) -> Diagnostic:
+    """Return the error for a clause with the fix that its English sentence suggests, and what to know of that fix.
+
+    ``is_explained`` says that the error is about a mistake in a clause of the language. Without
+    ``reads_sentences``, patterns alone make the fix.
+    """
+    read = _with_reading if reads_sentences else by_patterns
+    helped = read(failure, diagnostic, is_explained=is_explained, read_again=read_again)
+    piece = span_of(failure.tokens[:-1]) if len(failure.tokens) > 1 else None
+    edits = helped.fixes[0].edits if helped.fixes else ()
+    if piece is None or len(edits) != 1 or edits[0].span != piece or len(failure.tokens) > LONGEST:
+        return helped
+    known = notes(edits[0].text, declared_names(failure.source), failure.source.slice(piece))
+    return replace(helped, help="; ".join((*([helped.help] if helped.help else []), *known))) if known else helped
+
+
+def _with_reading(
+    failure: ParseFailure, diagnostic: Diagnostic, *, is_explained: bool, read_again: ReadAgain | None
+) -> Diagnostic:
+    """Return the error for a clause with the fix that its English sentence suggests, if it has one reading.
+
+    A sentence with several readings gets them in the help, and no fix. ``is_explained`` says that the error is
+    about a mistake in a clause of the language.
+    """
+    known = by_patterns(failure, diagnostic, is_explained=is_explained, read_again=read_again)
+    if failure.start != "clause" or failure.tokens[-1].type != END or not 2 < len(failure.tokens) <= LONGEST:
+        return known
+    if not (failure.tokens[0].text in KEYWORDS or is_own_line(failure)):
+        return known
+    if known.code == "TLT0110" and not known.fixes:
+        return known  # the help says what to declare
+    is_whole = bool(known.fixes) and is_mended(failure, known.fixes[0])
+    words = sentence_words(failure)
+    is_english = words.find(_ENGLISH_ALONE) is not None
+    if not is_english and (
+        (is_whole and not _is_foreign(known.fixes[0], failure)) or _has_readings(failure, known.help or "")
+    ):
+        return known
+    if not words or words.word(0) == "require" or (is_imperative(words) and words.word(0) not in KEYWORDS):
+        return known
+    found = sentence(words)
+    if not found.readings and not found.limit:
+        found = sentence(with_names(words))
+    if (
+        is_whole
+        and not is_english
+        and (len(found.readings) != 1 or _is_same(found.readings[0], failure, known.fixes[0]))
+    ):
+        return known
+    if found.readings and " ".join(found.readings[0].clauses) != words.text:
+        return _with_readings(failure, known, found.readings)
+    if found.limit and not found.readings:
+        return replace(known, help=found.limit, fixes=())
+    return known if is_whole or found.readings else _with_forms(failure, known, words)
+
+
+def _with_forms(failure: ParseFailure, diagnostic: Diagnostic, words: Words) -> Diagnostic:
+    """Return the error for a sentence that is not understood with the forms that it may mean in the help."""
+    is_general = not diagnostic.fixes and diagnostic.code in ("TLT0101", "TLT0107")
+    if not is_general or failure.clock_varies or _is_particular(failure, diagnostic.help):
+        return diagnostic
+    found = sentence_forms(words) or sentence_forms(with_names(words))
+    listed = "".join(f"\n`{form.clause}`: {form.says}" for form in found)
+    return replace(diagnostic, help=f"write one of these, if it says what you mean:{listed}") if found else diagnostic
+
+
+def _is_particular(failure: ParseFailure, help_: str | None) -> bool:
+    """Whether a help is about this sentence: it has a name of the file, in a clause that can be parsed or in a part."""
+    names = declared_names(failure.source).names
+    texts = [text for text in (help_ or "").split("`")[1::2] if names.keys() & {t.text for t in tokenize(text).tokens}]
+    return any(text.split(" ")[0] not in KEYWORDS or is_valid((text,)) for text in texts)
+
+
+def _is_foreign(fix: Fix, failure: ParseFailure) -> bool:
+    """Whether a fix has words of other languages, at which the next error would be: `==` of an enum, `prev(x)`."""
+    names = declared_names(failure.source).names
+    tokens = [token for edit in fix.edits for token in tokenize(edit.text).tokens]
+    return any(
+        token.type in ("EQUALS", "UNEQUAL") or (token.text in SYNONYMS and token.text not in names) for token in tokens
+    )
+
+
+def _is_same(reading: Reading, failure: ParseFailure, fix: Fix) -> bool:
+    """Whether a fix leaves the clauses of a reading, apart from blanks and brackets."""
+    return plain_text(" ".join(reading.clauses)) == plain_text(mended(failure, fix))
+
+
+def _has_readings(failure: ParseFailure, help_: str) -> bool:
+    """Whether a help names two forms in the words of the file; clauses among them can be parsed."""
+    names = declared_names(failure.source).names
+    texts = {text for text in help_.split("`")[1::2] if not text.isidentifier()}
+    texts = {text for text in texts if text.split(" ")[0] not in KEYWORDS or is_valid((text,))}
+    used = [{token.text for token in tokenize(text).tokens if token.type == "NAME"} - _UNITS for text in texts]
+    return sum(bool(known) and known <= names.keys() for known in used) > 1
+
+
+def _with_readings(failure: ParseFailure, diagnostic: Diagnostic, found: tuple[Reading, ...]) -> Diagnostic:
+    """Return the error with the reading of a sentence as its fix, or with its readings in the help."""
+    valid = [
+        reading
+        for reading in found
+        if is_valid(reading.clauses) and not failure.lacks_fixed_clock(" ".join(reading.clauses))
+    ]
+    if not valid:
+        return diagnostic
+    texts = [" and ".join(f"`{clause}`" for clause in reading.clauses) for reading in valid]
+    if len(valid) > 1:
+        described = [f"{text} {reading.condition}".rstrip() for text, reading in zip(texts, valid, strict=True)]
+        return replace(diagnostic, help=f"write {', or '.join(described)}", fixes=())
+    span = span_of(failure.tokens[:-1])
+    indent = failure.source.text[: span.start].rpartition("\n")[2]
+    separator = f"\n{indent}" if not indent.strip() else " "
+    fix = replacement_fix(failure.source, span, separator.join(valid[0].clauses))
+    return replace(diagnostic, help=f"write {texts[0]}", fixes=(replace(fix, title=f"Write {texts[0]}"),))
