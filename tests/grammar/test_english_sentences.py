@@ -8,11 +8,10 @@ from pathlib import Path
 import pytest
 
 import tltlc
-from tests.grammar.phrases_as_typed import errors, fix
+from tests.grammar.phrases_as_typed import errors, fix, is_equivalent
 from tltlc.core.source import SourceFile
 from tltlc.grammar.english.phrases import PHRASES
-from tltlc.grammar.english.readings import Sentence, sentence
-from tltlc.grammar.english.rules import Rules
+from tltlc.grammar.english.readings import Meanings, Sentence, sentence
 from tltlc.grammar.lexer import tokenize
 from tltlc.grammar.mistakes.declared_names import declared_names
 from tltlc.grammar.mistakes.sentences.calls import with_own_calls
@@ -69,7 +68,6 @@ ONE_READING = {
     "keep none of fire and spray": ["keep (not fire and not spray)"],
     "when health falls below 20 then fire starts": ["keep begins (health < 20) implies begins fire"],
     "when health falls below 20 then fire on the next step": ["keep begins (health < 20) implies weak_next fire"],
-    "when health falls below 20 then fire until spray": ["keep begins (health < 20) implies (fire until spray)"],
     "keep coins increases by at most 3": ["keep coins <= previous(coins) + 3"],
     "when phase becomes menu or shift then fire": [
         "keep begins (phase is menu) or begins (phase is shift) implies fire"
@@ -91,6 +89,65 @@ ONE_READING = {
         "keep fire implies not spray",
         "keep spray implies health >= 5 and health <= 5",
     ],
+    "avoid fire between spray and spray": ["avoid fire and not spray and previously once spray"],
+    "between spray and boss_dead reach fire": [
+        "keep boss_dead and previously (not boss_dead since spray) implies "
+        "previously (not boss_dead since (fire and not boss_dead and previously (not boss_dead since spray)))"
+    ],
+    "from spray until boss_dead avoid fire": ["keep begins spray implies (not fire weak_until boss_dead)"],
+    "avoid fire after spray until boss_dead": ["keep spray implies (not fire weak_until boss_dead)"],
+    "begins fire exactly once between spray and boss_dead": [
+        "keep spray implies weak_next ((not begins fire and not boss_dead) weak_until "
+        "(begins fire and not boss_dead and weak_next (not begins fire weak_until boss_dead)))"
+    ],
+    "no more than 3 s without fire": ["avoid time_holding(not fire) > 3 s"],
+    "never go 3 s without fire": ["avoid time_holding(not fire) >= 3 s"],
+    "fire lasts at least 2 s": ["keep begins fire implies always for 2 s fire"],
+    "each fire lasts between 1 and 2 s": [
+        "keep begins fire implies always for 1 s fire",
+        "avoid time_holding(fire) > 2 s",
+    ],
+    "fire lasts exactly 3 steps": [
+        "keep begins fire implies (always for 3 steps fire) and weak_next after 3 steps not fire"
+    ],
+    "fire for at most 0.3 s in total": ["avoid fire then fire then fire then fire"],
+    "phase only goes menu then shift then results then menu": [
+        "keep phase is menu implies weak_next (phase is menu or phase is shift)",
+        "keep phase is shift implies weak_next (phase is shift or phase is results)",
+        "keep phase is results implies weak_next (phase is results or phase is menu)",
+    ],
+    "phase must go menu -> shift -> results": [
+        "keep phase is menu implies weak_next (phase is menu or phase is shift)",
+        "keep phase is shift implies weak_next (phase is shift or phase is results)",
+        "keep phase is results implies weak_next phase is results",
+    ],
+    "phase becomes results only from shift": ["keep begins (phase is results) implies previously phase is shift"],
+    "phase leaves menu only to shift": ["keep ends (phase is menu) implies phase is shift"],
+    "reach fire, spray and boss_dead in any order": ["reach fire", "reach spray", "reach boss_dead"],
+    "reach fire and spray within 5 s in any order": [
+        "require eventually within 5 s fire",
+        "require eventually within 5 s spray",
+    ],
+    "reach fire, spray in any order then boss_dead": ["reach fire then boss_dead", "reach spray then boss_dead"],
+    "reach fire then spray then boss_dead without coins > 3 in between": [
+        "reach fire and next (coins <= 3 until (spray and next (coins <= 3 until boss_dead)))"
+    ],
+    "phase becomes results": ["reach phase is results"],
+    "keep fire == (phase == menu or phase == shift)": ["keep fire iff phase is menu or phase is shift"],
+    "when fire for the last 2 s then spray": ["keep time_holding(fire) >= 2 s implies spray"],
+    "keep health < 3 when fire has been true for 2 s": ["keep time_holding(fire) >= 2 s implies health < 3"],
+    "avoid fire and spray unless boss_dead": ["keep (fire and spray) implies boss_dead"],
+    "avoid fire unless spray for 3 frames": [
+        "keep fire implies historically for 3 steps spray and previously previously true"
+    ],
+    "keep if fire then spray between 0.1 s and 0.3 s before": ["keep fire implies previously once within 0.2 s spray"],
+    "when fire then spray between 2 and 4 steps later": [
+        "keep fire implies next after 2 steps eventually within 2 steps spray"
+    ],
+    "when phase becomes shift while fire, spray within 3 s": [
+        "keep within 3 s of begins (phase is shift) and fire, spray"
+    ],
+    "G (fire -> spray or not boss_dead)": ["keep fire implies spray or not boss_dead"],
     "keep spray -> Y((!fire) S boss_dead)": ["keep spray implies previously (not fire since boss_dead)"],
 }
 
@@ -104,8 +161,96 @@ SEVERAL_READINGS = {
         ("keep within 5 s of ends fire, not spray", "if one step is enough"),
     ],
     "once fire keep fire until spray": [
+        ("keep fire implies (fire weak_until spray)", "if play may end before `spray`"),
         ("keep fire implies (fire until spray)", "if `spray` must come"),
-        ("keep fire implies (fire weak_until spray)", "if it need not"),
+    ],
+    "when health falls below 20 then fire until spray": [
+        ("keep begins (health < 20) implies (fire weak_until spray)", "if play may end before `spray`"),
+        ("keep begins (health < 20) implies (fire until spray)", "if `spray` must come"),
+    ],
+    "fire -> phase = menu until spray": [
+        ("keep fire implies (phase is menu weak_until spray)", "if play may end before `spray`"),
+        ("keep fire implies (phase is menu until spray)", "if `spray` must come"),
+    ],
+    "given fire when spray then boss_dead until coins > 3": [
+        ("keep fire and spray implies (boss_dead weak_until coins > 3)", "if play may end before `coins > 3`"),
+        ("keep fire and spray implies (boss_dead until coins > 3)", "if `coins > 3` must come"),
+    ],
+    "fire at least every 5 s": [
+        ("keep time_holding(not fire) < 5 s", "if play may end in the middle of that time"),
+        ("keep eventually within 5 s fire", "if `fire` must also hold at the last step"),
+    ],
+    "at least once every 5 steps fire happens": [
+        (
+            "avoid always for 5 steps not fire and next after 5 steps not fire",
+            "if play may end in the middle of that time",
+        ),
+        ("keep eventually within 5 steps fire", "if `fire` must also hold at the last step"),
+    ],
+    "while spray, fire at least every 5 s": [
+        ("keep time_holding(spray and not fire) < 5 s", "if play may end in the middle of that time"),
+        (
+            "keep spray implies eventually within 5 s (fire or not spray)",
+            "if play must not end before `fire`",
+        ),
+    ],
+    "after fire avoid fire for 3 s": [
+        (
+            "avoid (begins fire) then within 3 s (begins fire)",
+            "if it may last, and must not begin again in that time",
+        ),
+        ("avoid fire then within 3 s fire", "if no step with it may follow in that time"),
+        ("keep ends fire implies always for 3 s not fire", "if the time counts from its end"),
+    ],
+    "whenever fire ends, no fire for 3 s": [("keep ends fire implies always for 3 s not fire", "")],
+    "no more than once fire within 5 s": [
+        ("avoid (begins fire) then within 5 s (begins fire)", "if steps in a row count once"),
+        ("avoid fire then within 5 s fire", "if each step counts"),
+    ],
+    "at least 5 s between two fire": [
+        ("avoid (begins fire) then within 5 s (begins fire)", "if steps in a row count once"),
+        ("avoid fire then within 5 s fire", "if each step counts"),
+    ],
+    "avoid fire for more than 3 s while spray": [
+        ("avoid time_holding(fire and spray) > 3 s", "if the time counts only while `spray`"),
+        ("avoid spray and time_holding(fire) > 3 s", "if `fire` may have begun before `spray`"),
+    ],
+    "fire at most once between spray and spray": [
+        (
+            "avoid begins fire and not spray and previously (not spray since (begins fire and not spray "
+            "and previously once spray))",
+            "if steps in a row count once",
+        ),
+        (
+            "avoid fire and not spray and previously (not spray since (fire and not spray and previously once spray))",
+            "if each step counts",
+        ),
+    ],
+    "reach fire then spray then boss_dead within 5 s": [
+        (
+            "require eventually within 5 s (boss_dead and previously once (spray and previously once fire))",
+            "if the time is for all of them",
+        ),
+        ("reach fire then begins spray then within 5 s boss_dead", "if it counts from where `spray` begins"),
+        (
+            "reach fire then spray then within 5 s boss_dead",
+            "if it counts from any step with `spray`, such as the last",
+        ),
+    ],
+    "reach fire then spray without boss_dead": [
+        ("reach fire then spray", "avoid boss_dead", "if `boss_dead` must hold at no step of play"),
+        ("reach fire and next (not boss_dead until spray)", "if at no step between the goals"),
+    ],
+    "reach fire then spray 2 times": [
+        ("reach fire then begins spray then begins spray", "if steps in a row count once"),
+        ("reach fire then spray then spray", "if each step counts"),
+    ],
+    "when fire starts, spray within 2 s then boss_dead until phase is menu": [
+        (
+            "keep within 2 s of begins fire, spray and (boss_dead weak_until phase is menu)",
+            "if play may end before `phase is menu`",
+        ),
+        ("keep within 2 s of begins fire, spray and (boss_dead until phase is menu)", "if `phase is menu` must come"),
     ],
     "fire while spray": [
         ("reach fire and spray", "if it is a goal"),
@@ -209,13 +354,49 @@ def test_one_fix_mends_all_words_of_a_clause_that_can_be_parsed(typed: str, mean
             "`time_holding(fire and spray) > 0.3 s` needs 5 steps in a row, and its time is 0 s at the first of them; "
             "`time_holding(fire and spray) > 0.2 s` needs 4",
         ),
-        ("when fire then spray until boss_dead", "write `weak_until` for `until` if play may end before `boss_dead`"),
+        ("!fire U spray", "write `weak_until` for `until` if play may end before `spray`"),
     ],
 )
 def test_a_help_says_what_its_clauses_count(typed: str, note: str) -> None:
     (error,) = errors(spec(typed))
     assert error.fixes
     assert (error.help or "").endswith(f"; {note}")
+
+
+@pytest.mark.parametrize(
+    ("clauses", "other", "is_same"),
+    [
+        # At least every so often: the same, but for the end of play.
+        ("keep time_holding(not fire) < 0.5 s", "keep eventually within 0.5 s fire", False),
+        ("keep (time_holding(not fire) < 0.5 s) or fire", "keep time_holding(not fire) < 0.5 s", True),
+        (
+            "avoid always for 5 steps not fire and next after 5 steps not fire",
+            "keep time_holding(not fire) < 0.5 s",
+            True,
+        ),
+        # From one event to the next: in the past, and in the future.
+        (
+            "avoid fire and not spray and previously (not spray since (fire and not spray and previously once spray))",
+            "keep spray implies weak_next ((not fire and not spray) weak_until (spray or fire and weak_next "
+            "(not fire weak_until spray)))",
+            True,
+        ),
+        (
+            "keep spray and previously once spray implies "
+            "previously (not spray since (fire and not spray and previously once spray))",
+            "keep spray implies weak_next (not spray weak_until (fire and not spray))",
+            True,
+        ),
+        (
+            "avoid fire and not spray and previously once spray",
+            "keep spray implies weak_next (not fire weak_until spray)",
+            True,
+        ),
+    ],
+)
+def test_two_ways_to_say_a_rule_about_a_stretch_of_play_agree(clauses: str, other: str, is_same: bool) -> None:
+    texts = [f"{HEAD}spec s {{\n{text}\n}}\n" for text in (clauses, other)]
+    assert is_equivalent(*texts) is is_same
 
 
 def test_so_many_steps_in_a_row_take_the_time_that_a_note_says() -> None:
@@ -255,4 +436,4 @@ def test_each_list_of_phrases_stands_in_the_grammar() -> None:
 def test_each_rule_of_the_grammar_has_a_method_that_says_what_it_means() -> None:
     names = re.findall(r"-> *(\w+)", grammar())
     assert len(names) > 100
-    assert [name for name in names if not callable(getattr(Rules, name, None))] == []
+    assert [name for name in names if not callable(getattr(Meanings, name, None))] == []

@@ -10,8 +10,11 @@ from tests.grammar.phrases_as_typed import Outcome, Phrase, is_equivalent, outco
 
 PHRASES = tuple(phrases())
 SAYABLE = tuple(phrase for phrase in PHRASES if not phrase.unsayable)
-LEAST_RATE = 0.85
-"""The least share of phrases that compile to what is meant, as they stand or after the fix that is offered first."""
+LEAST_RATE = 0.84
+"""The least share of phrases that compile to what is meant, as they stand or after the fix that is offered first.
+
+A phrase with several readings gets a help that names them, and no fix; it is not counted.
+"""
 
 
 def settings(clauses: str) -> str:

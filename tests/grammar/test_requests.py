@@ -48,16 +48,10 @@ def first_error(clause: str, declarations: str) -> Diagnostic:
         ("shooter", "rifle only", "keep weapon is rifle"),
         # Rules about a span of time, and about changes.
         ("racing", "no boosting in the first 10 s", "require always for 10 s not boosting"),
-        ("puzzle", "bell at least once every 60 s", "keep eventually within 60 s bell"),
         ("racing", "no boosting from lap 2 on", "keep lap >= 2 implies always not boosting"),
         ("rpg", "spend no gold", "avoid gold < previous(gold)"),
         ("racing", "keep lap never decreases", "avoid lap < previous(lap)"),
         # Answers.
-        (
-            "stealth",
-            "given hidden when alarm then mode is chase until seen",
-            "keep hidden and alarm implies (mode is chase until seen)",
-        ),
         ("stealth", "when alarm then no takedown until hidden", "keep alarm implies (not takedown weak_until hidden)"),
         ("stealth", "when mode becomes chase then alarm", "keep begins mode is chase implies alarm"),
         (
@@ -100,11 +94,6 @@ def first_error(clause: str, declarations: str) -> Diagnostic:
             "racing",
             "once !finished: always !(boosting || drifting)",
             "keep not finished implies always not (boosting or drifting)",
-        ),
-        (
-            "racing",
-            "after crashed avoid crashed for 1 s",
-            "avoid (begins crashed) then within 1 s (begins crashed)",
         ),
         (
             "racing",
@@ -167,6 +156,9 @@ def test_the_first_fix_of_a_sentence_has_its_meaning(declarations: str, typed: s
         ("shooter", "dash while reloading"),
         ("shooter", "throw a grenade and kill within 3 s"),
         ("stealth", "seen, then hidden within 10 s"),
+        ("stealth", "given hidden when alarm then mode is chase until seen"),
+        ("puzzle", "bell at least once every 60 s"),
+        ("racing", "after crashed avoid crashed for 1 s"),
         ("stealth", "stay disguised until in_vault"),
         ("stealth", "steal the keycard, enter the vault, leave by the exit"),
         ("platformer", "never pause during the boss fight"),

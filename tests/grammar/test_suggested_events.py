@@ -64,8 +64,6 @@ MEANINGS: dict[str, Meaning] = {
     "avoid a within 2 s of a": does_not_begin_twice_in_time,
     "avoid begins a within 2 s of begins a": does_not_begin_twice_in_time,
     "avoid a within 2 s of begins a": does_not_begin_twice_in_time,
-    "avoid a within 2 s after a": does_not_begin_twice_in_time,
-    "avoid (a) within 2 s after (a)": does_not_begin_twice_in_time,
     "keep not a within 2 s of a": does_not_begin_twice_in_time,
     "keep begins a implies not (begins a) within 2 s": does_not_begin_twice_in_time,
     "keep begins a implies not begins a for 2 s": does_not_begin_twice_in_time,
@@ -100,6 +98,17 @@ def test_an_event_that_must_not_follow_itself_gets_both_readings(clause: str) ->
     again, single = suggestions(clause)
     check(again, does_not_begin_twice_in_time)
     check(single, is_single_and_apart)
+
+
+@pytest.mark.parametrize(
+    "clause", ["avoid a within 2 s after a", "avoid (a) within 2 s after (a)", "no a for 2 s after a"]
+)
+def test_what_must_not_follow_itself_may_last_or_count_from_its_end(clause: str) -> None:
+    assert error_of(clause)[1].fixes == ()
+    again, single, ended = suggestions(clause)
+    check(again, does_not_begin_twice_in_time)
+    check(single, is_single_and_apart)
+    assert ended == "keep ends a implies always for 2 s not a"
 
 
 @pytest.mark.parametrize(

@@ -14,6 +14,9 @@ from tltlc.grammar.mistakes.sentences.states import AND, ATOM, OR, State, joined
 MOST_STEPS: Final = 8
 """The most steps after which a condition must hold: a monitor has up to two to the power of them states."""
 
+_MOST_PREVIOUS: Final = 3
+"""The most times that `previously` is repeated."""
+
 
 @record
 class Asked:
@@ -59,9 +62,38 @@ class Answers(Conditions):
     def within_before(self, state: State, duration: Duration) -> Asked:
         return Asked(Answer("now", State(f"once within {duration.text} {state.at(ATOM)}")))
 
+    def window_before(self, state: State, window: tuple[Duration, Duration]) -> Asked | None:
+        last, first = window
+        steps, length = self.steps(last), _difference(last, first)
+        if not steps.is_integer() or not 0 <= steps <= _MOST_PREVIOUS or length is None:
+            return None
+        return Asked(Answer("now", State(f"{'previously ' * int(steps)}once within {length.text} {state.at(ATOM)}")))
+
+    def window_after(self, state: State, window: tuple[Duration, Duration]) -> Asked | None:
+        first, last = window
+        length = _difference(first, last)
+        if length is None or is_negative(state) or not 0 < self.steps(first) <= MOST_STEPS:
+            return None
+        text = f"next after {first.text} eventually within {length.text} {state.at(ATOM)}"
+        return Asked(Answer("now", State(text)), is_formula=True)
+
+    def within_then_until(self, state: State, duration: Duration, kept: State, end: State) -> list[Asked]:
+        return [
+            Asked(Answer("within", joined([state, asked.answer.state], "and"), duration.text), asked.condition)
+            for asked in _until(kept, end)
+        ]
+
+    def within_then_lasting(self, state: State, duration: Duration, kept: State, length: Duration) -> Asked:
+        lasting = State(f"always for {length.text} {kept.at(ATOM)}")
+        state = lasting if state == kept else joined([state, lasting], "and")
+        return Asked(Answer("within", state, duration.text))
+
     def within_unless(self, state: State, duration: Duration, event: Event) -> Asked | None:
+        return None if is_negative(state) else self.reach_in_time_unless(state, duration, event)
+
+    def reach_in_time_unless(self, state: State, duration: Duration, event: Event) -> Asked | None:
         exception = as_state(event)
-        if exception is None or is_negative(state) or state.level > OR:
+        if exception is None or state.level > OR:
             return None
         return Asked(Answer("within", joined([state, exception], "or"), duration.text))
 
@@ -97,12 +129,9 @@ class Answers(Conditions):
     def delayed_first(self, duration: Duration, state: State) -> Asked | None:
         return self.delayed(state, duration)
 
-    def until(self, state: State, end: State) -> Asked:
-        operator = "weak_until" if state.text.startswith("not ") else "until"
-        return Asked(Answer("now", State(f"({state.at(ATOM)} {operator} {end.at(ATOM)})")), is_formula=True)
-
-    def keep_until(self, state: State, end: State) -> Asked | list[Asked]:
-        return self.until(state, end) if state.text.startswith("not ") else _until(state, end)
+    def until(self, state: State, end: State) -> Asked | list[Asked]:
+        state = self.settled.get(state.text, state)
+        return self.never_until(state.negated(), end) if state.text.startswith("not ") else _until(state, end)
 
     def later(self, state: State) -> Asked:
         return Asked(Answer("eventually", state))
@@ -121,7 +150,7 @@ class Answers(Conditions):
 
     def never_within(self, state: State, duration: Duration) -> Asked:
         never = State(f"not eventually within {duration.text} {state.at(ATOM)}")
-        return Asked(Answer("now", never), is_formula=True, denied=state)
+        return Asked(Answer("now", never, duration.text), is_formula=True, denied=state)
 
     def never_until(self, state: State, end: State) -> Asked:
         return Asked(Answer("now", State(f"({state.negated().at(ATOM)} weak_until {end.at(ATOM)})")), is_formula=True)
@@ -141,9 +170,17 @@ def is_negative(state: State) -> bool:
     return state.text.startswith("not ") or " is not " in state.text or " != " in state.text
 
 
+def _difference(shorter: Duration, longer: Duration) -> Duration | None:
+    """Return how much longer a time is than another; None if they have different units, or it is not."""
+    if shorter.unit != longer.unit:
+        return None
+    difference = round(float(longer.number) - float(shorter.number), 6)
+    return Duration(f"{difference:g}", longer.unit) if difference > 0 else None
+
+
 def _until(state: State, end: State) -> list[Asked]:
     weak, strong = (State(f"({state.at(ATOM)} {operator} {end.at(ATOM)})") for operator in ("weak_until", "until"))
     return [
+        Asked(Answer("now", weak), f"if play may end before `{end.text}`", is_formula=True),
         Asked(Answer("now", strong), f"if `{end.text}` must come", is_formula=True),
-        Asked(Answer("now", weak), "if it need not", is_formula=True),
     ]

@@ -27,7 +27,7 @@ def with_whole_clause(diagnostic: Diagnostic, source: SourceFile, span: Span) ->
     label = diagnostic.labels[0] if diagnostic.labels else None
     if diagnostic.code not in _CODES or label is None or label.source != source or len(diagnostic.labels) > 1:
         return diagnostic
-    if diagnostic.code == "TLT0110" and not diagnostic.fixes:
+    if diagnostic.code == "TLT0110" and "declare " in (diagnostic.help or ""):
         return diagnostic  # the help says what to declare
     if diagnostic.code == "TLT0201" and source.slice(label.span) not in FOREIGN:
         return diagnostic  # a name that nothing declares

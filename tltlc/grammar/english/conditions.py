@@ -8,7 +8,7 @@ from tltlc.core.record import record
 from tltlc.grammar.english.events import Counted, Crossing, Event, Held, as_state
 from tltlc.grammar.english.quantities import Duration, Number, Quantities, comparison
 from tltlc.grammar.english.terminals import Term
-from tltlc.grammar.mistakes.sentences.states import ATOM, OR, State, joined
+from tltlc.grammar.mistakes.sentences.states import ATOM, OR, RULE, State, joined
 
 
 @record
@@ -159,6 +159,10 @@ class Conditions(Quantities):
         states = members.states
         pairs = [(a, b) for at, a in enumerate(states) for b in states[at + 1 :]]
         return joined([State(f"not ({joined([a, b], 'and').text})") for a, b in pairs], "and")
+
+    def same(self, one: Term | State, other: Term | State) -> State:
+        left, right = (State(item.text) if isinstance(item, Term) else item for item in (one, other))
+        return State(f"{left.at(OR)} iff {right.at(OR)}", RULE)
 
     # What lasts, and what is counted.
 

@@ -8,7 +8,8 @@ from typing import Final
 _MUST: Final = "must|should|shall|has to|have to|needs to|need to|ought to|will"
 _CANNOT: Final = (
     "must not|should not|shall not|may not|can not|cannot|will not|must never|should never|may never|can never|"
-    "has never to|mustn't|shouldn't|can't|won't|must not ever|is not allowed|are not allowed|is forbidden|never"
+    "has never to|mustn't|shouldn't|can't|won't|must not ever|is not allowed|are not allowed|is forbidden|never|"
+    "not allowed|not permitted|isn't allowed|are forbidden"
 )
 
 DROPPED: Final = frozenset("the a an player hero character user you they we it there he she i please just".split())
@@ -49,6 +50,7 @@ PHRASES: Final[Mapping[str, str]] = {
     "lasts": "lasts|last|must last|should last|takes|stays on|lasts for",
     "each": "each|every|any",
     "for": "for|for the next|for a full|for a total of|for next|for at least|at least for|for the following",
+    "for_last": "for last|for previous|throughout last|during last|over last|for whole last|for at least last|for past",
     "within": "within|in|by|in under|in less than|in at most|in no more than|no later than|within at most|inside|"
     "in the next|within the next|in next|within next|not later than|under",
     "first": "in the first|within the first|during the first|in first|within first|during first|for the first|"
@@ -71,8 +73,8 @@ PHRASES: Final[Mapping[str, str]] = {
     "times_relation": "only",
     "not": "not|isn't|don't|doesn't|aren't|do not|does not",
     "be": "is|are|be|being|am|gets|get|has|have|having|stays|stay|remains|remain|holds|hold|happens|happen|occurs|"
-    "occur|is being|must be|should be|is on|is active|is set|is true|stays true|remains true|is held|be true|"
-    "happens to be|stays on|is still|still",
+    "occur|come|comes|is being|must be|should be|is on|is active|is set|is true|stays true|remains true|is held|"
+    "be true|happens to be|stays on|is still|still",
     "is": "is|equals|is equal to|equal to|is exactly|has|at|in|on|stays|remains|stays at|remains at|is at|is in|"
     "is on|"
     "be|was|stays in",
@@ -84,8 +86,23 @@ PHRASES: Final[Mapping[str, str]] = {
     "is_never": "is never|never",
     "when_it": "at start of|at beginning of|at end of|at last|"
     "at|when|on|from|as of|since|during|at time of|at moment of|before",
+    "at_least_every": "at least every|at least once every|at least once each|at least once in every|"
+    "at least once in any|at least once per|at least once within any|at least one time every|no less often than every|"
+    "every|at least once in each|not less often than every",
+    "any_order": "in any order|, in any order|in whatever order|in no particular order|regardless of order|"
+    "in either order|no matter order|, in whatever order|order does not matter|, order doesn't matter|"
+    ", order does not matter",
+    "cooldown": "has cooldown of|has cooldown|cooldown of|cooldown|cools down for|with cooldown of|has delay of",
+    "meanwhile": "in between|between|between them|in between them|on way|meanwhile|along way|in meantime|between two",
+    "only_goes": "only goes|goes only|only changes|changes only|only moves|moves only|only switches|switches only|"
+    "only cycles|cycles|cycles through|only cycles through|must go|should go|always goes|always changes|can only go|"
+    "may only go|must only go|can only change|may only change|only advances|only steps|only goes through|only runs|"
+    "must only change|goes always|only follows|must follow|only passes through|only progresses|progresses only",
+    "in_that_order": "in that order|in this order|in order|, in that order|, in this order",
     "in_any": "within|in|in any|per|during|within any|every",
     "was": "was|was previously|had been|was before",
+    "has_been": "has been|have been|has been true|has been on|has been active|had been|has stayed|has remained|"
+    "has held|has been in|has been at|has stayed in|has stayed at|held",
     "becomes": "becomes|become|turns|turn|changes to|change to|turns to|turns into|goes to|go to|switches to|"
     "switch to|"
     "enters|enter|is set to|gets|moves to|changes into|reaches|starts being|turned|became",

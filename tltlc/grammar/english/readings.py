@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING, Any, Final
 from tltlc.core.record import record
 from tltlc.grammar.english.events import Crossing
 from tltlc.grammar.english.forms import Form, Part, forms
+from tltlc.grammar.english.intervals import Intervals
+from tltlc.grammar.english.orders import Orders
 from tltlc.grammar.english.phrases import grammar_text
 from tltlc.grammar.english.rules import Reading, Rules
 from tltlc.grammar.english.terminals import UNKNOWN, Term, known_terms, terms
@@ -33,6 +35,10 @@ _CONTENT: Final = frozenset((*_FIRST, UNKNOWN, "VALUE", "SIGN", "UNIT", "TIME_UN
 """The terminals that a sentence which is understood has in conditions and times alone."""
 _MOST: Final = 64
 """The most ways in which the parts of one phrase are put together."""
+
+
+class Meanings(Intervals, Orders):
+    """The meanings of all rules of the grammar."""
 
 
 @record
@@ -67,7 +73,7 @@ def sentence_forms(words: Words) -> tuple[Form, ...]:
         return ()
     _, vocabulary = _parser()
     terminals = [term for term in known_terms(words, vocabulary) if term.text not in _EMPTY]
-    rules = Rules(words.names)
+    rules = Meanings(words.names)
     if any(term.kind == UNKNOWN or (term.kind == "BOOL" and term.declared is None) for term in terminals):
         return ()
     parts: list[Part] = []
@@ -123,7 +129,7 @@ def _sentence(words: Words) -> Sentence:
         return Sentence()
     assert isinstance(tree, Tree)
     unique: dict[tuple[str, ...], Reading] = {}
-    rules = Rules(words.names)
+    rules = Meanings(words.names)
     for reading in _values(tree.children[0], rules):
         unique.setdefault(reading.clauses, reading)
     if len(unique) > _MOST_READINGS:

@@ -11,7 +11,7 @@ from tltlc.grammar.english.quantities import MIRRORED, Change, Duration, Number
 from tltlc.grammar.english.terminals import Term
 from tltlc.grammar.mistakes.sentences.answers import Answer
 from tltlc.grammar.mistakes.sentences.rules import answered
-from tltlc.grammar.mistakes.sentences.states import AND, ATOM, OR, State, joined
+from tltlc.grammar.mistakes.sentences.states import ATOM, OR, State, joined
 from tltlc.grammar.mistakes.sentences.vocabulary import NEGATED_SIGN
 
 When = Literal["if", "when", "while", "as long as", "each", "after"]
@@ -27,15 +27,13 @@ class Reading:
 
 @record
 class Goals:
-    """Goals one after the other."""
+    """Goals one after the other. ``condition`` says when a sentence means them, if there are other readings."""
 
     states: tuple[State, ...]
+    condition: str = ""
 
 
 _LASTING: Final = ("while", "as long as")
-_MOST_GOALS: Final = 8
-"""The most goals that repeated goals are written out to."""
-
 _Found = Reading | list[Reading] | None
 
 
@@ -58,7 +56,7 @@ class Rules(Answers):
         if isinstance(event, Counted):
             return None if event.sign in ("<", "<=") else _limited(event, NEGATED_SIGN.get(event.sign or ">=", ""))
         if isinstance(event, Held):
-            return _never_held(event)
+            return never_held(event)
         if isinstance(event, Crossing):
             return Reading((f"avoid {event.state.text}",))
         if event.level == OR:
@@ -73,18 +71,6 @@ class Rules(Answers):
         if not _are_simple(state, end):
             return None
         return Reading((f"require {state.negated().at(ATOM)} weak_until {end.at(ATOM)}",))
-
-    def avoid_between(self, state: State, start: State, end: State) -> _Found:
-        return _between(state.negated(), start, end)
-
-    def between_avoid(self, start: State, end: State, state: State) -> _Found:
-        return _between(state.negated(), start, end)
-
-    def keep_between(self, state: State, start: State, end: State) -> _Found:
-        return _between(state, start, end)
-
-    def between_keep(self, start: State, end: State, state: State) -> _Found:
-        return _between(state, start, end)
 
     def avoid_without(self, state: State, event: Event) -> _Found:
         condition = as_state(event)
@@ -112,12 +98,6 @@ class Rules(Answers):
             return None  # the first step has no value before
         return Reading((f"keep {state.text}",))
 
-    def count_within(self, counted: Counted, duration: Duration) -> None:
-        self.limits.append(
-            f"`times({counted.state.text})` counts from the first step on, and no clause can say how often something "
-            f"happens within {duration.text}: let the game count, and supply the number"
-        )
-
     def limit_count(self, counted: Counted) -> _Found:
         if counted.state.text.startswith("not "):
             return None
@@ -132,6 +112,15 @@ class Rules(Answers):
     def number_before(self, sign: str, number: Term, state: State) -> Counted | None:
         return Counted(state, sign, number.text)
 
+    def number_exactly(self, number: Term, term: Term) -> Counted:
+        return Counted(State(term.text), "==", number.text)
+
+    def only_behind(self, state: State, number: str) -> Counted:
+        return Counted(state, "<=", number)
+
+    def only_before(self, number: Term, term: Term) -> Counted:
+        return Counted(State(term.text), "<=", number.text)
+
     def exactly_behind(self, state: State, number: str) -> Counted:
         return Counted(state, "==", number)
 
@@ -139,9 +128,9 @@ class Rules(Answers):
         return Counted(state, "==", number)
 
     def keep_short(self, state: State, duration: Duration) -> _Found:
-        return _never_held(Held(state, ">", duration))
+        return never_held(Held(state, ">", duration))
 
-    def lasts_at_least(self, state: State, duration: Duration) -> _Found:
+    def lasts_at_least(self, state: State, duration: Duration) -> Reading:
         return Reading((f"keep begins {state.at(ATOM)} implies always for {duration.text} {state.at(ATOM)}",))
 
     def lasts_exactly(self, state: State, duration: Duration) -> _Found:
@@ -150,29 +139,8 @@ class Rules(Answers):
         formula = lasting_formula(state, duration, state.negated())
         return Reading((f"keep begins {state.at(ATOM)} implies {formula.text}",))
 
-    def goals(self, *events: Event) -> Goals | None:
-        if any(isinstance(event, Counted) for event in events[1:]):
-            return None  # the count begins at the first step, not at the goal before
-        states = [_goal(event) for event in events]
-        known = [state for state in states if state is not None]
-        is_clear = not any(state.text in self.exclusive for state in known)
-        return Goals(tuple(known)) if len(known) == len(states) and is_clear else None
-
-    def repeated(self, *parts: Event | str) -> Goals | None:
-        """Return goals that are repeated: `(a then b) 3 times`."""
-        goals = self.goals(*(part for part in parts if not isinstance(part, str)))
-        number = parts[-1]
-        if goals is None or not isinstance(number, str) or not number.isdecimal():
-            return None
-        return Goals(goals.states * int(number)) if 0 < int(number) * len(goals.states) <= _MOST_GOALS else None
-
-    def total(self, state: State, sign: str, duration: Duration) -> None:
-        self.limits.append(
-            f"no clause can say for how long `{state.text}` holds in total: let the game add the time up, and supply it"
-        )
-
     def reach(self, goals: Goals) -> _Found:
-        return Reading((f"reach {' then '.join(goal.at(OR) for goal in goals.states)}",))
+        return Reading((f"reach {' then '.join(goal.at(OR) for goal in goals.states)}",), goals.condition)
 
     def reach_within(self, event: Event, duration: Duration) -> _Found:
         state = as_state(event)
@@ -242,6 +210,17 @@ class Rules(Answers):
     def first(self, when: When, event: Event, answers: list[Asked]) -> _Found:
         return _conditional(when, event, answers)
 
+    def keep_if(self, event: Event, answers: list[Asked]) -> _Found:
+        return _conditional("if", event, answers)
+
+    def given(self, condition: Event, when: When, event: Event, answers: list[Asked]) -> _Found:
+        state = self.all_of(condition, event)
+        return None if state is None else _conditional(when, state, answers)
+
+    def first_while(self, when: When, event: Event, condition: State, answers: list[Asked]) -> _Found:
+        state = self.all_of(event, condition)
+        return None if state is None else _conditional(when, state, answers)
+
     def last(self, answers: list[Asked], when: When, event: Event) -> _Found:
         state, answer = as_state(event), answers[0].answer
         if state is None or not _are_simple(state, answer.state):
@@ -270,7 +249,9 @@ class Rules(Answers):
             return None
         answer = answers[0].answer
         condition = _at(answer.state.negated() if answer.is_negative else answer.state, condition)
-        if condition is None or not _are_simple(condition, answer.state):
+        # `a and b unless c` is the same, whatever `unless` belongs to.
+        is_clear = answer.is_negative and " or " not in f"{answer.state.text} {condition and condition.text}"
+        if condition is None or not (is_clear or _are_simple(condition, answer.state)):
             return None
         if answer.kind == "always" and answer.is_negative:
             return Reading((f"keep {answer.state.negated().at(OR)} implies {condition.at(OR)}",))
@@ -280,19 +261,6 @@ class Rules(Answers):
 
     def unless_first(self, event: Event, answers: list[Asked]) -> _Found:
         return self.unless(answers, event)
-
-
-def _goal(event: Event) -> State | None:
-    """Return a goal: `hidden for 4 steps` begins at the first of them, behind the goal before."""
-    if isinstance(event, Held) and event.sign in ("<", "<="):
-        return None  # the first step of it would do
-    if not isinstance(event, Held) or not event.duration.is_steps or event.sign not in ("", ">="):
-        return as_state(event)
-    number, held = event.duration.number, event.state.at(ATOM)
-    if not number.isdecimal() or int(number) < 2:
-        return None
-    last = int(number) - 1
-    return State(f"(always for {number} steps {held}) and next after {last} step{'s' * (last > 1)} {held}", AND)
 
 
 def _at(event: State, condition: State) -> State | None:
@@ -324,7 +292,7 @@ def _limited(counted: Counted, sign: str) -> Reading | None:
     return None
 
 
-def _never_held(held: Held) -> Reading | None:
+def never_held(held: Held) -> Reading | None:
     """Return the rule that no stretch of steps with a condition is so long."""
     if held.sign not in (">", ">="):
         return None  # it may not hold all that time, or not at any step of it
@@ -338,13 +306,6 @@ def _never_held(held: Held) -> Reading | None:
         return Reading((f"avoid {state.text}",)) if most == 0 else None
     steps = f"{most} step{'s' * (most > 1)}"
     return Reading((f"avoid always for {steps} {state.at(ATOM)} and next after {steps} {state.at(ATOM)}",))
-
-
-def _between(state: State, start: State, end: State) -> Reading | None:
-    if max(start.level, end.level) > ATOM:
-        return None
-    begun = start.text if start.text.startswith(("begins ", "ends ")) else f"begins {start.at(ATOM)}"
-    return Reading((f"keep {begun} implies ({state.at(ATOM)} weak_until {end.at(ATOM)})",))
 
 
 def _conditional(when: When, event: Event, answers: list[Asked]) -> _Found:
@@ -367,8 +328,10 @@ def _answer_readings(when: When, event: Event, state: State, asked: Asked) -> li
     if asked.settled is not None and not is_edge:
         asked = Asked(replace(answer, state=asked.settled))
         answer = asked.answer
-    if asked.denied is not None and asked.denied.text == state.text:
-        return []  # an event that must not come again
+    forbidden = asked.denied or (answer.state.negated() if answer.kind == "lasting" and answer.is_negative else None)
+    if forbidden is not None and begun_text(forbidden) == begun_text(state):
+        # `not a within 5 s` may only ask for a step without a.
+        return not_again(state, forbidden, answer.time) if answer.time else []
     if asked.is_formula:
         if when == "if" and "until " in answer.state.text:
             return []  # the rule may end there, or what it asks for
@@ -384,6 +347,25 @@ def _answer_readings(when: When, event: Event, state: State, asked: Asked) -> li
     if asked.condition:
         return []
     return _two_readings(state, answer)
+
+
+def begun_text(state: State) -> str:
+    """Return the text of the beginning of a condition, or of a beginning or end itself."""
+    return state.text if state.text.startswith(("begins ", "ends ")) else f"begins {state.at(ATOM)}"
+
+
+def not_again(event: State, state: State, time: str) -> list[Reading]:
+    """Return the readings of `after a, no a for 5 s`; ``event`` is a, or its beginning."""
+    begun, ended = begun_text(event), begun_text(event).replace("begins ", "ends ", 1)
+    again = f"avoid ({begun}) then within {time} ({begun})"
+    readings = [Reading((again,), "if it may last, and must not begin again in that time")]
+    if state.text != begun:
+        each = f"avoid {state.at(ATOM)} then within {time} {state.at(ATOM)}"
+        readings.append(Reading((each,), "if no step with it may follow in that time"))
+    if ended != begun:
+        clause = f"keep {ended} implies always for {time} {state.negated().at(ATOM)}"
+        readings.append(Reading((clause,), "if the time counts from its end"))
+    return readings
 
 
 def _two_readings(event: State, answer: Answer) -> list[Reading]:

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from typing import Final
 
 from tltlc.core.record import record
-from tltlc.grammar.english.phrases import DROPPED
+from tltlc.grammar.english.phrases import DROPPED, PHRASES
 from tltlc.grammar.keywords import UNITS_ELSEWHERE
 from tltlc.grammar.mistakes.declared_names import DeclaredName
 from tltlc.grammar.mistakes.sentences.kinds import call_end
@@ -25,6 +25,14 @@ _LETTERS: Final = {"Y": "previously", "O": "once", "H": "historically", "S": "si
 UNKNOWN: Final = "UNKNOWN"
 """The kind of a word that no sentence of the grammar has."""
 _PREVIOUS: Final = ("previous", "prev")
+_EQUALITIES: Final = ("EQUALS", "UNEQUAL", "EQUAL")
+_BEFORE_VALUES: Final = frozenset(
+    word
+    for name in ("is", "is_not", "becomes", "leaves", "was")
+    for phrase in PHRASES[name].split("|")
+    for word in phrase.split()
+)
+"""Words between an enum and its value."""
 
 
 @record
@@ -58,6 +66,9 @@ def _terms(words: Words, vocabulary: Mapping[str, str]) -> Iterator[Term]:
         if (letter := _LETTERS.get(words[start:at].text)) and letter not in words.names.names:
             yield Term(vocabulary[letter], letter)
         elif word.is_name:
+            if _is_value(words, start):
+                yield Term("VALUE", word.text)
+                continue
             at = call_end(words, start)
             yield _name(words[start:at]) or Term(UNKNOWN, words[start:at].text)
         elif word.type in _SIGNS and word.text not in ("min", "max"):
@@ -80,6 +91,15 @@ def _terms(words: Words, vocabulary: Mapping[str, str]) -> Iterator[Term]:
             yield Term(vocabulary[word.text], word.text)
         elif word.text not in DROPPED:
             yield Term(UNKNOWN, word.text)
+
+
+def _is_value(words: Words, at: int) -> bool:
+    """Whether a name that is also a value of an enum stands as that value: behind the enum and words such as `is`."""
+    before = at - 1
+    while before >= 0 and (words[before].type in _EQUALITIES or words.word(before) in _BEFORE_VALUES):
+        before -= 1
+    declared = words.declared(before)
+    return declared is not None and declared.type == "enum" and words[at].text in declared.values
 
 
 def _unit(word: str) -> str:

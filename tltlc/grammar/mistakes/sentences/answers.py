@@ -103,7 +103,7 @@ def clause_of(event: State, answer: Answer) -> str:
 
 
 def _until(words: Words) -> Answer | None:
-    """Return the answer of `b until c`, as in the language, of `not b until c`, and of `b before c`: no c without b."""
+    """Return the answer of `no b until c`, and of `b before c`: no c without b. In `b until c`, c may have to come."""
     found = words.find(phrases("until", "till", "before"))
     if found is None or not found[0] or words.time(found[0] + 1):
         return None
@@ -117,8 +117,9 @@ def _until(words: Words) -> Answer | None:
     if found[1] == ("before",) and not forbidden:
         return Answer("now", State(f"({right.negated().at(ATOM)} weak_until {state.at(ATOM)})"))
     state = state.negated() if forbidden else state
-    operator = "weak_until" if state.text.startswith("not ") else "until"
-    return Answer("now", State(f"({state.at(ATOM)} {operator} {right.at(ATOM)})"))
+    if not state.text.startswith("not "):
+        return None
+    return Answer("now", State(f"({state.at(ATOM)} weak_until {right.at(ATOM)})"))
 
 
 def _stopped(words: Words) -> Answer | None:

@@ -73,7 +73,7 @@ def _with_reading(
         return known
     if not (failure.tokens[0].text in KEYWORDS or is_own_line(failure)):
         return known
-    if known.code == "TLT0110" and not known.fixes:
+    if known.code == "TLT0110" and "declare " in (known.help or ""):
         return known  # the help says what to declare
     is_whole = bool(known.fixes) and is_mended(failure, known.fixes[0])
     words = sentence_words(failure)

@@ -151,7 +151,7 @@ def _borders(words: Words, first: int) -> list[tuple[int, int]]:
     keyword = words.find(phrases("reach", "keep", "avoid"), first + 1)
     if keyword is not None:
         return [(keyword[0], keyword[0])]
-    ends = range(first + 1, len(words))
+    ends = [at for at in range(first + 1, len(words)) if words.word(at) not in ("begins", "ends")]
     known = [at for at in ends if condition_of(words[first:at]) is not None and answer_of(words[at:]) is not None]
     return [(known[0], known[0])] if len(known) == 1 else []
 
@@ -167,9 +167,8 @@ def answered(event: State, answer: Answer, *, is_from_then: bool, is_each: bool 
     is_ending = answer.state.negated().text in conditions
     if answer.kind == "lasting" and answer.state == event:
         return (f"keep begins {event.at(ATOM)} implies always for {answer.time} {answer.state.at(ATOM)}",)
-    if is_ending and is_from_then and answer.kind == "lasting" and answer.is_negative:
-        begins = f"(begins {event.at(ATOM)})"
-        return (f"avoid {begins} then within {answer.time} {begins}",)
+    if answer.kind == "lasting" and answer.state.negated().text in (event.text, event.text.removeprefix("begins ")):
+        return None  # the time may count from the beginning, or from the end
     if answer.state == event and (answer.kind == "always" or (answer.keyword == "keep" and answer.kind == "now")):
         return (f"keep {event.at(OR)} implies always {event.at(ATOM)}",)
     if is_each and answer.kind in ("now", "always") and not is_ending and (answer.keyword or answer.is_negative):
@@ -178,6 +177,8 @@ def answered(event: State, answer: Answer, *, is_from_then: bool, is_each: bool 
         return None  # an event that answers itself begins again
     if answer.is_open and not is_ending:
         return None  # `not b within 5 s` may ask for one step without b, or for no step with it
+    if is_ending and answer.kind == "within" and answer.is_negative:
+        return None  # an event that must not come again
     if is_ending and answer.kind == "within":
         return (f"keep {event.at(OR)} implies eventually within {answer.time} {answer.state.at(ATOM)}",)
     if is_reached and answer.kind == "eventually" and is_from_then:
@@ -262,6 +263,8 @@ def _whenever(left: Words, right: State, phrase: tuple[str, ...]) -> Clauses | N
     """Return the rule of `b if a`, `never b while a`, `b within 5 s after a`."""
     is_from_then = phrase in FROM_THEN or phrase == ("of",)
     prohibited = _prohibited(left)
+    if prohibited is not None and prohibited.text.startswith("time_holding("):
+        return None  # the time may count only while the condition holds
     if prohibited is not None:
         answer = Answer("always" if is_from_then else "now", prohibited.negated())
         return None if phrase == ("of",) else answered(right, answer, is_from_then=is_from_then)

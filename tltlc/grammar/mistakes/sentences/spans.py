@@ -1,4 +1,4 @@
-"""Read rules about a span of time: ``no crash in the first 20 s``, ``bell at least every 30 s``."""
+"""Read rules about a span of time: ``no crash in the first 20 s``, ``no alarm from lap 2 on``."""
 
 from __future__ import annotations
 
@@ -9,7 +9,6 @@ from tltlc.grammar.mistakes.sentences.states import ATOM, OR, State, count_of, s
 from tltlc.grammar.mistakes.sentences.vocabulary import ALWAYS, COPULAS, FIRST_WITHIN, MODALS, NEVER, SUBJECTS
 from tltlc.grammar.mistakes.sentences.words import Words, phrases
 
-_EVERY: Final = phrases("at least every", "at least once every", "at least once in every", "at least once per")
 _FROM: Final = phrases("from", "starting from", "starting with", "starting at", "beginning with")
 _ON: Final = phrases("on", "onwards", "onward", "forward", "forwards")
 _FIRST: Final = phrases("before the first", "before first", "before any", "before the very first")
@@ -18,25 +17,11 @@ _FIRST: Final = phrases("before the first", "before first", "before any", "befor
 def span_rule_of(words: Words) -> tuple[str, ...] | None:
     """Return the clauses of a rule about a span of time, or None if the words are none."""
     words = words.without([*SUBJECTS, ("keep",)])
-    for read in (_recurring, _from_then_on, _in_the_first, _only_value, _none_of, _counted_first):
+    for read in (_from_then_on, _in_the_first, _only_value, _none_of, _counted_first):
         clause = read(words)
         if clause is not None:
             return (clause,)
     return None
-
-
-def _recurring(words: Words) -> str | None:
-    """Return the rule of `a at least every 30 s`."""
-    found = words.find(_EVERY)
-    if found is None or not found[0]:
-        return None
-    time = words.time(found[0] + len(found[1]))
-    state = state_of(_affirmed(words[: found[0]]))
-    return None if time is None or time[1] < len(words) or state is None else _every(time[0].text, state)
-
-
-def _every(time: str, state: State) -> str:
-    return f"keep eventually within {time} {state.at(ATOM)}"
 
 
 def _affirmed(words: Words) -> Words:

@@ -45,7 +45,7 @@ def _between(words: Words) -> tuple[str, ...] | None:
         return None  # `keep health between 20 and 80`
     state = state_of(rule[len(forbidden) or 1 :])
     first, last = state_of(start), state_of(stop)
-    if state is None or first is None or last is None or max(first.level, last.level) > ATOM:
+    if state is None or first is None or last is None or max(first.level, last.level) > ATOM or first == last:
         return None
     begun = first.text if first.text.startswith(("begins ", "ends ")) else f"begins {first.at(ATOM)}"
     held = (state.negated() if forbidden else state).at(ATOM)

@@ -1,0 +1,169 @@
+"""What the rules about orders mean: goals in any order, or with nothing between, and the values of an enum."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import pairwise
+from typing import Final
+
+from tltlc.grammar.english.answers import is_negative
+from tltlc.grammar.english.events import Counted, Event, Held, as_state
+from tltlc.grammar.english.quantities import Duration
+from tltlc.grammar.english.rules import Goals, Reading, Rules, begun_text
+from tltlc.grammar.english.terminals import Term
+from tltlc.grammar.mistakes.sentences.states import AND, ATOM, OR, State, joined
+
+_MOST_GOALS: Final = 8
+"""The most goals that repeated goals are written out to."""
+_FEWEST_VALUES: Final = 3
+"""With two values, `from a to b` may be the only change that is allowed, or the only way to b."""
+
+_Found = Reading | list[Reading] | None
+
+
+class Orders(Rules):
+    """The meanings of the rules about orders."""
+
+    # Goals.
+
+    def goals(self, *events: Event) -> Goals | list[Goals] | None:
+        if any(isinstance(event, Counted) for event in events[1:]):
+            return _counted_goals(events)
+        states = [_goal(event) for event in events]
+        known = [state for state in states if state is not None]
+        is_clear = not any(state.text in self.exclusive for state in known)
+        return Goals(tuple(known)) if len(known) == len(states) and is_clear else None
+
+    def repeated(self, *parts: Event | str) -> Goals | None:
+        """Return goals that are repeated: `(a then b) 3 times`."""
+        goals = self.goals(*(part for part in parts if not isinstance(part, str)))
+        number = parts[-1]
+        if not isinstance(goals, Goals) or not isinstance(number, str) or not number.isdecimal():
+            return None
+        return Goals(goals.states * int(number)) if 0 < int(number) * len(goals.states) <= _MOST_GOALS else None
+
+    def list(self, *states: State) -> Goals:
+        return Goals(states)
+
+    def reach_each(self, goals: Goals) -> _Found:
+        return Reading(tuple(f"reach {state.text}" for state in goals.states))
+
+    def reach_each_within(self, goals: Goals, duration: Duration) -> _Found:
+        if any(is_negative(state) for state in goals.states):
+            return None
+        within = f"require eventually within {duration.text}"
+        return Reading(tuple(f"{within} {state.at(ATOM)}" for state in goals.states))
+
+    def reach_each_then(self, goals: Goals, last: State) -> _Found:
+        return Reading(tuple(f"reach {state.at(OR)} then {last.at(OR)}" for state in goals.states))
+
+    def reach_goals_within(self, goals: Goals, duration: Duration) -> _Found:
+        *before, last = goals.states
+        if (
+            not before
+            or is_negative(last)
+            or any(" then " in state.text or "always " in state.text for state in goals.states)
+        ):
+            return None
+        first = " then ".join(state.at(OR) for state in before)
+        whole = before[0]
+        for state in goals.states[1:]:
+            whole = joined([state, State(f"previously once {whole.at(ATOM)}")], "and")
+        rest, earlier = f"then within {duration.text} {last.at(OR)}", before[-1]
+        readings = [
+            Reading((f"require eventually within {duration.text} {whole.at(ATOM)}",), "if the time is for all of them"),
+            Reading((f"reach {first} {rest}",), f"if it counts from any step with `{earlier.text}`, such as the last"),
+        ]
+        if earlier.level == ATOM and not earlier.text.startswith(("begins ", "ends ", "time", "not ")):
+            begun = " then ".join([*(state.at(OR) for state in before[:-1]), f"begins {earlier.at(ATOM)}"])
+            readings.insert(1, Reading((f"reach {begun} {rest}",), f"if it counts from where `{earlier.text}` begins"))
+        return readings
+
+    def goals_without(self, goals: Goals, avoided: State) -> _Found:
+        between = self.goals_without_between(goals, avoided)
+        if between is None or avoided.level > ATOM:
+            return None
+        goal = " then ".join(state.at(OR) for state in goals.states)
+        return [
+            Reading((f"reach {goal}", f"avoid {avoided.text}"), f"if `{avoided.text}` must hold at no step of play"),
+            Reading(between.clauses, "if at no step between the goals"),
+        ]
+
+    def goals_without_between(self, goals: Goals, avoided: State) -> Reading | None:
+        *before, goal = goals.states
+        if not before or any(state.text == avoided.text for state in goals.states):
+            return None
+        for state in reversed(before):
+            following = f"next ({avoided.negated().at(ATOM)} until {goal.at(ATOM)})"
+            goal = joined([state, State(following)], "and")
+        return Reading((f"reach {goal.text}",))
+
+    def change_alone(self, state: State) -> _Found:
+        """Return the goal of `phase becomes results`, which no word makes a rule."""
+        settled = self.settled.get(state.text)
+        if settled is None:
+            return None
+        return Reading((f"reach {settled.text if state.text.startswith('begins ') else state.text}",))
+
+    # The values of an enum.
+
+    def only_goes(self, name: Term, *values: Term) -> _Found:
+        if name.declared is None or len(values) < _FEWEST_VALUES:
+            return None
+        following: dict[str, list[str]] = {value.text: [value.text] for value in values}
+        for value, after in pairwise(value.text for value in values):
+            following[value] += [after] if after not in following[value] else []
+        if not following.keys() <= {*name.declared.values}:
+            return None
+        clauses = []
+        for value, allowed in following.items():
+            states = joined([State(f"{name.text} is {text}") for text in allowed], "or")
+            clauses.append(f"keep {name.text} is {value} implies weak_next {states.at(ATOM)}")
+        return Reading(tuple(clauses))
+
+    def only_from(self, name: Term, value: Term, *before: Term) -> _Found:
+        state, origin = self.enum_begins(name, value), self.enum(name, *before)
+        if state is None or origin is None:
+            return None
+        return Reading((f"keep {state.text} implies previously {origin.at(ATOM)}",))
+
+    def only_to(self, name: Term, value: Term, *after: Term) -> _Found:
+        state, following = self.enum_ends(name, value), self.enum(name, *after)
+        return None if state is None or following is None else Reading((f"keep {state.text} implies {following.text}",))
+
+
+def _goal(event: Event) -> State | None:
+    """Return a goal: `hidden for 4 steps` begins at the first of them, behind the goal before."""
+    if isinstance(event, Held) and event.sign in ("<", "<="):
+        return None  # the first step of it would do
+    if not isinstance(event, Held) or not event.duration.is_steps or event.sign not in ("", ">="):
+        return as_state(event)
+    number, held = event.duration.number, event.state.at(ATOM)
+    if not number.isdecimal() or int(number) < 2:
+        return None
+    last = int(number) - 1
+    return State(f"(always for {number} steps {held}) and next after {last} step{'s' * (last > 1)} {held}", AND)
+
+
+def _counted_goals(events: Sequence[Event]) -> list[Goals] | None:
+    """Return `a then b 2 times` as `a then b then b`, since a count begins at the first step, not at the goal before.
+
+    Each step counts, or each beginning.
+    """
+    readings = []
+    for is_begun, condition in ((True, "if steps in a row count once"), (False, "if each step counts")):
+        states: list[State] = []
+        for at, event in enumerate(events):
+            if at and isinstance(event, Counted):
+                if event.sign not in ("", ">=") or not event.number.isdecimal():
+                    return None
+                states += [State(begun_text(event.state)) if is_begun else event.state] * int(event.number)
+            else:
+                state = _goal(event)
+                if state is None:
+                    return None
+                states.append(state)
+        if len(states) > _MOST_GOALS:
+            return None
+        readings.append(Goals(tuple(states), condition))
+    return readings
