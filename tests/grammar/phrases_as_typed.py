@@ -23,10 +23,11 @@ from tltlc.tools.lint.scopes import apply_edits
 FOLDER = Path(__file__).parent / "phrases"
 MOST_ROUNDS = 3
 """The most fixes that are applied to one phrase, each for another error."""
+_KEYWORDS = ("reach", "keep", "avoid", "require", "limit")
 NO_CLAUSE = "no clause can say"
 """What the help of an ``unsayable`` phrase says."""
 
-Kind = Literal["right", "helped", "not helped", "warned", "wrong"]
+Kind = Literal["right", "helped", "named", "not helped", "warned", "wrong"]
 
 
 @record
@@ -55,7 +56,8 @@ class Outcome:
     """What becomes of a phrase, and the text that it ends as.
 
     ``right``: it compiles as it stands to what is meant. ``helped``: it does after the fixes that are
-    offered first. ``warned``: it ends as something else, but the linter says so. ``wrong``: it ends as
+    offered first. ``named``: a help names several clauses with what each says, and what is meant is
+    among them. ``warned``: it ends as something else, but the linter says so. ``wrong``: it ends as
     something else, and nothing says so. ``not helped``: an error is left that offers no fix.
     An automaton that is too large is such an error, too. An ``unsayable`` phrase is ``helped`` if it
     is offered no fix, and its help says that no clause can say it; it is ``wrong`` if it compiles.
@@ -125,13 +127,35 @@ def warnings(text: str) -> set[str]:
     return {diagnostic.code for diagnostic in (*compiled.diagnostics, *findings) if diagnostic.severity != "note"}
 
 
+def _is_named(phrase: Phrase, text: str, left: list[Diagnostic]) -> bool:
+    """Whether each clause that is meant is one that a help names, or one of the text."""
+    quoted = [quote for error in left for quote in (error.help or "").split("`")[1::2]]
+    helps = [quote for quote in quoted if quote.split(" ")[0] in _KEYWORDS]
+    body = text.partition("spec s {\n")[2].splitlines()
+    known = [*helps, *(line.strip() for line in body if line.strip().split(" ")[0] in _KEYWORDS)]
+
+    def is_known(clause: str) -> bool:
+        return any(clause == other or _means(phrase, clause, other) for other in known)
+
+    readings = [reading.strip().splitlines() for reading in (phrase.meant, *phrase.also)]
+    return bool(helps) and any(all(is_known(line.strip()) for line in lines) for lines in readings if lines)
+
+
+def _means(phrase: Phrase, one: str, other: str) -> bool:
+    try:
+        return is_equivalent(spec_text(phrase, one), spec_text(phrase, other))
+    except TltlError:
+        return False
+
+
 def outcome(phrase: Phrase) -> Outcome:
     typed = spec_text(phrase, phrase.typed)
     text, left = fix(typed)
     if left:
         if phrase.unsayable and text == typed and any(NO_CLAUSE in (error.help or "") for error in left):
             return Outcome("helped", text, left[0].help or "")
-        return Outcome("not helped", text, f"{left[0].title}; {left[0].help}")
+        kind: Kind = "named" if _is_named(phrase, text, left) else "not helped"
+        return Outcome(kind, text, f"{left[0].title}; {left[0].help}")
     try:
         automaton(text)
     except TltlError as error:

@@ -10,11 +10,10 @@ from tests.grammar.phrases_as_typed import Outcome, Phrase, is_equivalent, outco
 
 PHRASES = tuple(phrases())
 SAYABLE = tuple(phrase for phrase in PHRASES if not phrase.unsayable)
-LEAST_RATE = 0.84
-"""The least share of phrases that compile to what is meant, as they stand or after the fix that is offered first.
-
-A phrase with several readings gets a help that names them, and no fix; it is not counted.
-"""
+TWO_WRITERS = ("achievement", "gherkin", "playtest", "quest", "speedrun")
+"""The files of the first 300 phrases, and after `fresh_` those of their second writer."""
+LEAST_RATE = 0.85
+"""The least share of phrases that compile to what is meant, as they stand or after what the help names."""
 
 
 def settings(clauses: str) -> str:
@@ -35,11 +34,25 @@ def test_explain_says_what_is_meant(phrase: Phrase) -> None:
     assert sentence(result.text if is_right else spec_text(phrase, phrase.meant)) == phrase.explain
 
 
-def test_most_phrases_are_right_or_rightly_helped_and_none_is_wrong() -> None:
-    outcomes = [(phrase, outcome(phrase)) for phrase in PHRASES]
+@pytest.fixture(scope="module")
+def outcomes() -> list[tuple[Phrase, Outcome]]:
+    return [(phrase, outcome(phrase)) for phrase in PHRASES]
+
+
+def test_no_phrase_is_wrong(outcomes: list[tuple[Phrase, Outcome]]) -> None:
+    assert not [phrase for phrase, result in outcomes if result.kind == "wrong"], table(outcomes)
+
+
+def test_most_phrases_are_right_or_the_first_fix_is(outcomes: list[tuple[Phrase, Outcome]]) -> None:
+    written = [pair for pair in outcomes if pair[0].source.removeprefix("fresh_") in TWO_WRITERS]
+    number = Counter(result.kind for _, result in written)
+    assert len(written) == 300
+    assert number["right"] + number["helped"] >= LEAST_RATE * len(written), table(written)
+
+
+def test_most_phrases_are_right_or_rightly_helped(outcomes: list[tuple[Phrase, Outcome]]) -> None:
     number = Counter(result.kind for _, result in outcomes)
-    assert number["wrong"] == 0, table(outcomes)
-    assert number["right"] + number["helped"] >= LEAST_RATE * len(outcomes), table(outcomes)
+    assert number["right"] + number["helped"] + number["named"] >= LEAST_RATE * len(outcomes), table(outcomes)
 
 
 def table(outcomes: list[tuple[Phrase, Outcome]]) -> str:

@@ -77,7 +77,7 @@ _TWO: Final = (
     _Pattern("keep {t} implies always {r}", "from the first {t} on, {r} at every step",
              "after once from stays stay always never ever no"),
     _Pattern("keep {p} implies once {t}", "{p} only after {t}, or at the same step",
-             "only before after first without needs requires until not"),
+             "only before after first without needs requires"),
     _Pattern("require {r} weak_until {t}", "{r} at every step before {t}, which need not come", "until till before"),
     _Pattern("require {r} until {t}", "{r} at every step before {t}, which must come", "until till"),
     _Pattern("keep {r} or {t}", "{r} at each step without {t}", "unless except"),
