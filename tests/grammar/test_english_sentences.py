@@ -32,6 +32,18 @@ signal state: (Idle, Dead)
 """
 
 ONE_READING = {
+    "keep times(fire) since spray <= 2": [
+        "avoid begins fire and previously (not spray since (begins fire and previously (not spray since begins fire)))"
+    ],
+    "keep times(fire) <= 1 per phase is results": [
+        "avoid begins fire and phase is results and previously (phase is results since "
+        "(begins fire and phase is results))"
+    ],
+    "fire at most once since last spray": ["avoid begins fire and previously (not spray since begins fire)"],
+    "keep fire implies after 0.2 s spray": ["keep fire implies next after 0.2 s spray"],
+    "phase is shift begins exactly 0.2 s after fire": ["keep fire implies next after 0.2 s begins (phase is shift)"],
+    "avoid fire then spray without boss_dead": ["avoid spray and previously (not boss_dead since fire)"],
+    "no spray after fire without boss_dead in between": ["avoid spray and previously (not boss_dead since fire)"],
     "when phase becomes results and coins >= 30 then health < 3": [
         "keep begins (phase is results) and coins >= 30 implies health < 3"
     ],
@@ -283,6 +295,9 @@ UNSAYABLE = {
     "when fire then coins == coins at last spray": "no clause can say what `coins` was at `spray`",
     "when fire ends then coins >= (coins when fire started) + 5": "no clause can say what `coins` was at `fire`",
     "when fire then coins > coins when phase became shift": "what `coins` was at `phase becomes shift`",
+    "keep fire implies coins >= (coins at begins phase is shift) - 3": "no clause can say what `coins` was at",
+    "keep health drops by at most 40 since ends fire": "no clause can say what `health` was at `ends fire`",
+    "fire at most 9 times since spray": "let the game count since then",
     "avoid more than 2 times fire within 5 s": "no clause can say how often",
     "fire for at most 4 s in total": "no clause can say for how long `fire` holds in total",
 }
@@ -360,7 +375,7 @@ def test_one_fix_mends_all_words_of_a_clause_that_can_be_parsed(typed: str, mean
 def test_a_help_says_what_its_clauses_count(typed: str, note: str) -> None:
     (error,) = errors(spec(typed))
     assert error.fixes
-    assert (error.help or "").endswith(f"; {note}")
+    assert (error.help or "").endswith(f"\n{note}")
 
 
 @pytest.mark.parametrize(

@@ -17,6 +17,8 @@ _CONDITIONAL: Final = frozenset("if when whenever while during once after every 
 """Words before the condition of a rule."""
 _BEHIND: Final = frozenset("if when whenever while during once after unless until till since only".split())
 """Words between an answer and the condition of its rule."""
+_IMPLICATIONS: Final = frozenset(("implies", "->", "=>"))
+"""Words between the condition of a rule and its answer."""
 _PAIRED: Final = frozenset("between both either neither exactly precisely to".split())
 """Words whose meaning no form has."""
 _MODALS: Final = ("must", "should", "may", "can", "will", "shall")
@@ -151,8 +153,9 @@ def forms(parts: Sequence[Part]) -> tuple[Form, ...]:
     texts = {name: state.at(ATOM) for name, state in slots.items()}
     texts.update(T=durations[0].text if durations else "", n=numbers[0] if numbers else "")
     cues = set(words)
-    ranked = sorted(PATTERNS[key], key=lambda pattern: -len(cues & set(pattern.cues.split())))
-    fitting = [pattern for pattern in ranked if cues & set(pattern.cues.split())] or PATTERNS[key][:3]
+    known = [p for p in PATTERNS[key] if words[:1] not in (["keep"], ["avoid"]) or not p.clause.startswith("reach")]
+    ranked = sorted(known, key=lambda pattern: -len(cues & set(pattern.cues.split())))
+    fitting = [pattern for pattern in ranked if cues & set(pattern.cues.split())] or known[:3]
     quoted = {name: f"`{text}`" if name not in "Tn" else text for name, text in texts.items()}
     found = (Form(p.clause.format(**texts), p.says.format(**quoted)) for p in fitting)
     return tuple({form.clause: form for form in found}.values())[:_MOST_FORMS]
@@ -168,7 +171,7 @@ def _slots(parts: Sequence[Part], conditions: Sequence[int]) -> dict[str, State]
     first, second = conditions[:2]
     between = {part.text for part in parts[first:second] if isinstance(part, Term)}
     before = {part.text for part in parts[:first] if isinstance(part, Term)}
-    is_behind = bool(between & _BEHIND) and not before & _CONDITIONAL
+    is_behind = bool(between & _BEHIND) and not before & _CONDITIONAL and not between & _IMPLICATIONS
     event, answer = (second, first) if is_behind else (first, second)
     slots.update(t=states[event], r=states[answer], p=plain[answer])
     return slots

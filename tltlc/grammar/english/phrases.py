@@ -25,6 +25,8 @@ PHRASES: Final[Mapping[str, str]] = {
     "after": "after|once|right after|immediately after|directly after|following|from",
     "unless": "unless|except when|except if|except while|except during|except|unless when",
     "only_when": "only with|only if|only when|only while|only whenever|only during|only as long as|only at|only in",
+    "per": "per|in each|in every|each|every|for each|for every|during each|within each|"
+    "during every|in any|within|between",
     "needs": "requires|needs|depends on",
     "only_after": "only after|only once|not before|not until|comes after|happens after|only happens after",
     "iff": "iff|if and only if|exactly when|exactly if|exactly while",

@@ -203,7 +203,9 @@ class Quantities:
 
 
 def comparison(left: Number, sign: str, right: Number) -> State | None:
-    """Return a comparison in the language, which has no equality of real numbers."""
+    """Return a comparison in the language, which has no equality of real numbers; None of a number with itself."""
+    if left.text == right.text:
+        return None
     if sign in ("==", "!="):
         return _equality(left, sign, right)
     return State(

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any, Final
 from tltlc.core.record import record
 from tltlc.grammar.english.events import Crossing
 from tltlc.grammar.english.forms import Form, Part, forms
-from tltlc.grammar.english.intervals import Intervals
 from tltlc.grammar.english.orders import Orders
+from tltlc.grammar.english.periods import Periods
 from tltlc.grammar.english.phrases import grammar_text
 from tltlc.grammar.english.rules import Reading, Rules
 from tltlc.grammar.english.terminals import UNKNOWN, Term, known_terms, terms
@@ -37,7 +37,7 @@ _MOST: Final = 64
 """The most ways in which the parts of one phrase are put together."""
 
 
-class Meanings(Intervals, Orders):
+class Meanings(Periods, Orders):
     """The meanings of all rules of the grammar."""
 
 
@@ -58,6 +58,8 @@ def sentence(words: Words) -> Sentence:
     if find_spec("lark") is None:
         return Sentence()
     whole = _sentence(words)
+    if not whole.readings and not whole.limit and words.word(0) == "keep":
+        whole = _sentence(words[1:])
     lines = words.lines()
     if whole.readings or whole.limit or len(lines) < 2:
         return whole

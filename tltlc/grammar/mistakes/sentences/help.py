@@ -57,7 +57,7 @@ def sentence_help(
     if piece is None or len(edits) != 1 or edits[0].span != piece or len(failure.tokens) > LONGEST:
         return helped
     known = notes(edits[0].text, declared_names(failure.source), failure.source.slice(piece))
-    return replace(helped, help="; ".join((*([helped.help] if helped.help else []), *known))) if known else helped
+    return replace(helped, help="\n".join((*([helped.help] if helped.help else []), *known))) if known else helped
 
 
 def _with_reading(
