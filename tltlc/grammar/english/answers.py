@@ -97,6 +97,15 @@ class Answers(Conditions):
             return None
         return Asked(Answer("within", joined([state, exception], "or"), duration.text))
 
+    def within_first_unless(self, duration: Duration, state: State, event: Event) -> Asked | None:
+        return self.within_unless(state, duration, event)
+
+    def within_then_until_it(self, duration: Duration, state: State, end: State) -> list[Asked]:
+        """Return the readings of `within 1 s a until b`: a begins in that time, and then holds until b."""
+        told = {"weak_until": f"if play may end before `{end.text}`", "until": f"if `{end.text}` must come"}
+        formulas = ((f"({state.at(ATOM)} {operator} {end.at(ATOM)})", why) for operator, why in told.items())
+        return [Asked(Answer("within", State(text), duration.text), why) for text, why in formulas]
+
     def within_first(self, duration: Duration, state: State) -> Asked | list[Asked]:
         return self.within(state, duration)
 
