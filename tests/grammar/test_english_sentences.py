@@ -128,7 +128,7 @@ ONE_READING = {
         "keep phase is shift implies weak_next (phase is shift or phase is results)",
         "keep phase is results implies weak_next (phase is results or phase is menu)",
     ],
-    "phase must go menu -> shift -> results": [
+    "phase can only go menu -> shift -> results": [
         "keep phase is menu implies weak_next (phase is menu or phase is shift)",
         "keep phase is shift implies weak_next (phase is shift or phase is results)",
         "keep phase is results implies weak_next phase is results",
@@ -161,9 +161,96 @@ ONE_READING = {
     ],
     "G (fire -> spray or not boss_dead)": ["keep fire implies spray or not boss_dead"],
     "keep spray -> Y((!fire) S boss_dead)": ["keep spray implies previously (not fire since boss_dead)"],
+    "fire => prev(phase) == menu": ["keep fire implies previously (phase is menu)"],
+    "fire -> spray unless boss_dead": ["keep fire implies spray or boss_dead"],
+    "coins >= prev(coins) unless phase == menu": ["keep coins >= previous(coins) or phase is menu"],
+    "abs(coins - prev(coins)) <= 1": ["keep abs(coins - previous(coins)) <= 1"],
+    "|health - health'| <= 4": ["keep abs(health - previous(health)) <= 4"],
+    "health <= min(health so far)": ["keep health <= lowest(health)"],
+    "health <= prev health, always": ["keep health <= previous(health)"],
+    "G(health >= 0.5 * health@0)": ["keep health >= 0.5 * initial(health)"],
+    "fire xor (phase == menu or phase == shift)": ["keep fire iff not (phase is menu or phase is shift)"],
+    "duration(fire) <= 3s": ["keep time_holding(fire) <= 3 s"],
+    "fire => within(5s, spray || boss_dead)": ["keep within 5 s of fire, spray or boss_dead"],
+    "on(fire): spray for 1.5s": ["keep fire implies always for 1.5 s spray"],
+    "F[<=3min] (boss_dead && coins > 40)": ["require eventually within 3 min (boss_dead and coins > 40)"],
+    "never: prev(phase) == menu and phase == results": ["avoid previously (phase is menu) and phase is results"],
+    "G(fire -> X G phase == menu)": ["keep fire implies weak_next always phase is menu"],
+    "when fire: (not spray) U[<=20s] boss_dead": [
+        "keep within 20 s of fire, boss_dead",
+        "keep fire implies (not spray until boss_dead)",
+    ],
+    "phase == menu -> phase == shift -> phase == results -> fire": [
+        "reach phase is menu then phase is shift then phase is results then fire"
+    ],
+    "fire then spray then reach boss_dead": ["reach fire then spray then boss_dead"],
+    "menu -> results is forbidden": ["avoid previously (phase is menu) and phase is results"],
+    "phase: menu -> results is not allowed": ["avoid previously (phase is menu) and phase is results"],
+    "no transition from menu to results": ["avoid previously (phase is menu) and phase is results"],
+    "never go from menu to results": ["avoid previously (phase is menu) and phase is results"],
+    "phase must not go from menu straight to results": ["avoid previously (phase is menu) and phase is results"],
+    "phase only goes to results from shift": ["keep begins (phase is results) implies previously phase is shift"],
+    "results only from shift": ["keep begins (phase is results) implies previously phase is shift"],
+    "coins only decreases while fire": ["keep coins < previous(coins) implies fire"],
+    "fire only starts when spray": ["keep begins fire implies spray"],
+    "once phase is results it stays results": ["keep phase is results implies always phase is results"],
+    "once fire it stays that way": ["keep fire implies always fire"],
+    "fire never lasts longer than 10 s": ["avoid time_holding(fire) > 10 s"],
+    "spray for 5 seconds at some point": ["reach time_holding(spray) >= 5 s"],
+    "boss_dead then spray holds 10 s": ["reach boss_dead then time_holding(spray) >= 10 s"],
+    "finish with at least as many coins as you started with": ["require eventually always coins >= initial(coins)"],
+    "while fire, coins may not grow by more than 2 per step": ["keep fire implies coins <= previous(coins) + 2"],
+    "health may change by at most 2 per step": ["keep abs(health - previous(health)) <= 2"],
+    "coins never increases by more than 2": ["keep coins <= previous(coins) + 2"],
+    "health never drops below 20": ["keep health >= 20"],
+    "health stays above 20": ["keep health > 20"],
+    "phase stays menu or shift": ["keep phase is menu or phase is shift"],
+    "if fire then spray within a second": ["keep within 1 s of fire, spray"],
 }
 
+AGAIN = [
+    ("avoid (begins fire) then within 2 s (begins fire)", "if it may last, and must not begin again in that time"),
+    ("avoid fire then within 2 s fire", "if no step with it may follow in that time"),
+    ("keep ends fire implies always for 2 s not fire", "if the time counts from its end"),
+]
+APART = [
+    ("avoid (begins fire) then within 2 s (begins fire)", "if steps in a row count once"),
+    ("avoid fire then within 2 s fire", "if each step counts"),
+]
 SEVERAL_READINGS = {
+    "cooldown(fire, 2 s)": AGAIN,
+    "fire has a cooldown of 2 s": AGAIN,
+    "fire at most once every 2 s": APART,
+    "at least 2 s between two fire": APART,
+    "pause of 2 s between fire and the next fire": APART,
+    "no two consecutive fire within 2 s": APART,
+    "never fire twice within 2 s": APART,
+    "finally(coins >= 3 && fire)": [
+        ("require eventually always (coins >= 3 and fire)", "if it must hold at the last step"),
+        ("reach (coins >= 3 and fire)", "if once is enough"),
+    ],
+    "fire then spray in < 90s": [
+        ("keep fire implies eventually within 90 s spray", "if it must follow each time"),
+        ("reach fire then within 90 s spray", "if both are goals, and the time counts from `fire`"),
+        ("require eventually within 90 s (spray and previously once fire)", "from the first step"),
+    ],
+    "if fire then spray until boss_dead": [
+        ("keep fire implies (spray weak_until boss_dead)", "if play may end before `boss_dead`"),
+        ("require (fire implies spray) weak_until boss_dead", "if the rule ends at `boss_dead`"),
+        ("keep fire implies (spray until boss_dead)", "if `boss_dead` must come"),
+    ],
+    "if fire then not spray until boss_dead": [
+        ("keep fire implies (not spray weak_until boss_dead)", "from each step with `fire` on"),
+        ("require (fire implies not spray) weak_until boss_dead", "if the rule ends at `boss_dead`"),
+    ],
+    "fire must never go off": [
+        ("avoid fire", "if `fire` must not come"),
+        ("avoid ends fire", "if it must not end"),
+    ],
+    "count(fire) <= 2 until spray": [
+        ("require times(fire) <= 2 weak_until spray", "if play may end before `spray`"),
+        ("require times(fire) <= 2 until spray", "if `spray` must come"),
+    ],
     "fire only if spray since boss_dead": [
         ("keep fire implies (spray since boss_dead)", ""),
         ("keep fire implies (not boss_dead since spray)", ""),
@@ -268,6 +355,14 @@ SEVERAL_READINGS = {
         ("reach fire and spray", "if it is a goal"),
         ("keep spray implies fire", "for each step with `spray`"),
     ],
+    "coins > 3 or fire": [("reach coins > 3 or fire", "if it is a goal"), ("keep coins > 3 or fire", "for every step")],
+    "duration(fire) >= 3 s": [
+        ("reach time_holding(fire) >= 3 s", "if it must last so long once"),
+        ("keep begins fire implies always for 3 s fire", "if it must last so long each time"),
+    ],
+    "count(fire) >= 3": [
+        ("reach times(fire) >= 3", "if it counts how often `fire` begins: no clause can count its steps"),
+    ],
     "when fire avoid spray": [
         ("avoid fire and spray", "for each step with `fire`"),
         ("keep fire implies always not spray", "if it holds from then on"),
@@ -276,7 +371,6 @@ SEVERAL_READINGS = {
 
 NO_READING = (
     "never fire or spray",
-    "if fire then spray until boss_dead",
     "keep fire or spray unless boss_dead and fire",
     "reach not fire within 5 s",
     "fire upside down spray",
@@ -299,6 +393,8 @@ UNSAYABLE = {
     "keep health drops by at most 40 since ends fire": "no clause can say what `health` was at `ends fire`",
     "fire at most 9 times since spray": "let the game count since then",
     "avoid more than 2 times fire within 5 s": "no clause can say how often",
+    "fire => coins@2s > coins": "no clause can say what `coins` is 2 s later or earlier",
+    "coins@fire - coins@spray >= 10": "no clause can say what `coins` was at `fire`",
     "fire for at most 4 s in total": "no clause can say for how long `fire` holds in total",
 }
 
@@ -322,6 +418,19 @@ def test_a_sentence_has_several_readings(typed: str) -> None:
     readings = read(typed).readings
     assert [(*reading.clauses, reading.condition) for reading in readings] == SEVERAL_READINGS[typed]
     assert all(is_valid(reading.clauses) for reading in readings)
+
+
+@pytest.mark.parametrize(
+    "typed", ["phase: menu -> shift -> results -> menu", "phase must go from menu to shift to results to menu"]
+)
+def test_an_order_of_values_is_a_goal_or_a_rule(typed: str) -> None:
+    goal, rule = read(typed).readings
+    assert goal.clauses == ("reach phase is menu then phase is shift then phase is results then phase is menu",)
+    assert rule.clauses == (
+        "keep phase is menu implies weak_next (phase is menu or phase is shift)",
+        "keep phase is shift implies weak_next (phase is shift or phase is results)",
+        "keep phase is results implies weak_next (phase is results or phase is menu)",
+    )
 
 
 @pytest.mark.parametrize("typed", NO_READING)

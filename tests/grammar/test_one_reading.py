@@ -198,7 +198,7 @@ ROWS: list[tuple[str, str | None]] = [
     ("keep a nor b or c", None),
     ("keep a NOR b", None),
     ("keep a NAND b", None),
-    ("keep a XOR b", None),
+    ("keep a XOR b", "keep a iff not b"),
     ("keep a else b", None),
     ("keep a entails b", None),
     ("unreach a", None),

@@ -24,7 +24,8 @@ class Asked:
 
     ``is_formula`` says that the answer is a formula about later steps, which counts from the step of the condition,
     ``is_once`` that it cannot be asked for at two steps in a row, but only where the condition begins. ``settled``
-    is what holds after a change that is asked for: a for `begins a`. ``denied`` is what must not hold for a time.
+    is what holds after a change that is asked for: a for `begins a`. ``denied`` is what must not hold for a time,
+    and ``until`` what is asked for until something else, which need not come.
     """
 
     answer: Answer
@@ -33,6 +34,7 @@ class Asked:
     is_once: bool = False
     settled: State | None = None
     denied: State | None = None
+    until: tuple[State, State] | None = None
 
 
 class Answers(Conditions):
@@ -40,6 +42,19 @@ class Answers(Conditions):
 
     def answers(self, *asked: Asked) -> list[list[Asked]]:
         return [[*asked]]
+
+    def until_in_time(self, state: State, duration: Duration, end: State) -> list[list[Asked]] | None:
+        """Return both answers of `not a U[<=20 s] b`: b in that time, and a no more than that until then."""
+        if is_negative(end):
+            return None
+        asked = Asked(Answer("within", self.settled.get(end.text, end), duration.text))
+        return [[asked, Asked(Answer("now", State(f"({state.at(ATOM)} until {end.at(ATOM)})")), is_formula=True)]]
+
+    def until_by(self, state: State, end: State, duration: Duration) -> list[list[Asked]] | None:
+        return self.until_in_time(state, duration, end)
+
+    def never_until_by(self, state: State, end: State, duration: Duration) -> list[list[Asked]] | None:
+        return self.until_in_time(state.negated(), duration, end)
 
     def now(self, state: State) -> Asked:
         # A change is asked for at the step of the event alone, what holds after it at each such step.
@@ -106,6 +121,13 @@ class Answers(Conditions):
         formulas = ((f"({state.at(ATOM)} {operator} {end.at(ATOM)})", why) for operator, why in told.items())
         return [Asked(Answer("within", State(text), duration.text), why) for text, why in formulas]
 
+    def now_unless(self, state: State, event: Event) -> Asked | None:
+        exception = as_state(event)
+        is_change = state.text in self.settled or state.text in self.changing
+        if exception is None or is_change or state.level > ATOM:
+            return None
+        return Asked(Answer("now", joined([state, exception], "or")))
+
     def within_first(self, duration: Duration, state: State) -> Asked | list[Asked]:
         return self.within(state, duration)
 
@@ -151,6 +173,9 @@ class Answers(Conditions):
     def next(self, state: State) -> Asked:
         return Asked(Answer("now", State(f"weak_next {state.at(ATOM)}")), is_formula=True)
 
+    def next_forever(self, state: State) -> Asked:
+        return Asked(Answer("now", State(f"weak_next always {state.at(ATOM)}")), is_formula=True)
+
     def never(self, state: State) -> Asked:
         return Asked(Answer("always", state.negated(), "", True))
 
@@ -162,7 +187,8 @@ class Answers(Conditions):
         return Asked(Answer("now", never, duration.text), is_formula=True, denied=state)
 
     def never_until(self, state: State, end: State) -> Asked:
-        return Asked(Answer("now", State(f"({state.negated().at(ATOM)} weak_until {end.at(ATOM)})")), is_formula=True)
+        formula = State(f"({state.negated().at(ATOM)} weak_until {end.at(ATOM)})")
+        return Asked(Answer("now", formula), is_formula=True, until=(state.negated(), end))
 
     def stops(self, state: State) -> Asked:
         return Asked(Answer("next", state.negated()))
@@ -190,6 +216,6 @@ def _difference(shorter: Duration, longer: Duration) -> Duration | None:
 def _until(state: State, end: State) -> list[Asked]:
     weak, strong = (State(f"({state.at(ATOM)} {operator} {end.at(ATOM)})") for operator in ("weak_until", "until"))
     return [
-        Asked(Answer("now", weak), f"if play may end before `{end.text}`", is_formula=True),
-        Asked(Answer("now", strong), f"if `{end.text}` must come", is_formula=True),
+        Asked(Answer("now", weak), f"if play may end before `{end.text}`", True, until=(state, end)),
+        Asked(Answer("now", strong), f"if `{end.text}` must come", True),
     ]

@@ -37,7 +37,7 @@ def with_whole_clause(diagnostic: Diagnostic, source: SourceFile, span: Span) ->
         return diagnostic
     words = with_own_calls(words_of(clause, declared_names(source), tokens, ENGLISH))
     readings = sentence(words).readings
-    if len(readings) != 1 or not is_valid(readings[0].clauses):
+    if len(readings) != 1 or readings[0].condition or not is_valid(readings[0].clauses):
         return diagnostic
     text = " ".join(readings[0].clauses)
     if diagnostic.code == "TLT0201" and source.slice(label.span) in {token.text for token in tokenize(text).tokens}:

@@ -62,6 +62,19 @@ class Conditions(Quantities):
         states = [_is(name, value) for value in values]
         return joined(states, "or")
 
+    def enum_behind(self, value: Term, name: Term) -> State | None:
+        return self.enum(name, value)
+
+    def enum_of(self, *values: Term) -> Term | None:
+        """Return the only enum that has all these values."""
+        texts = {value.text for value in values}
+        enums = [
+            Term("ENUM", name, declared)
+            for name, declared in self._declared.names.items()
+            if declared.type == "enum" and texts <= {*declared.values} and not declared.parameters
+        ]
+        return enums[0] if len(enums) == 1 else None
+
     def not_enum(self, name: Term, *values: Term) -> State | None:
         state = self.enum(name, *values)
         return None if state is None else state.negated()
@@ -163,6 +176,9 @@ class Conditions(Quantities):
     def same(self, one: Term | State, other: Term | State) -> State:
         left, right = (State(item.text) if isinstance(item, Term) else item for item in (one, other))
         return State(f"{left.at(OR)} iff {right.at(OR)}", RULE)
+
+    def one_of_two(self, state: State, other: State) -> State:
+        return State(f"{state.at(OR)} iff {other.negated().at(OR)}", RULE)
 
     # What lasts, and what is counted.
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 from math import ceil
 from typing import Final
 
-from tltlc.core.record import record
+from tltlc.core.record import record, replace
 from tltlc.grammar.english.answers import is_negative
 from tltlc.grammar.english.events import Counted, Event, Held, as_state
 from tltlc.grammar.english.quantities import Duration
-from tltlc.grammar.english.rules import Goals, Reading, Rules, When, begun_text, never_held, not_again
+from tltlc.grammar.english.rules import Goals, Reading, Rules, When, are_simple, begun_text, never_held, not_again
 from tltlc.grammar.english.terminals import Term
 from tltlc.grammar.mistakes.sentences.states import AND, ATOM, OR, State, joined
 
@@ -110,6 +110,26 @@ class Intervals(Rules):
     def after_until_keep(self, start: State, end: State, state: State) -> _Found:
         return self.keep_after_until(state, start, end)
 
+    # Until, at first and at last.
+
+    def until_rule(self, state: State, end: State) -> _Found:
+        if not are_simple(state, end):
+            return None
+        a, b = state.at(ATOM), end.at(ATOM)
+        return [
+            Reading((f"require {a} weak_until {b}",), f"if play may end before `{end.text}`"),
+            Reading((f"require {a} until {b}",), f"if `{end.text}` must come"),
+        ]
+
+    def keep_first(self, duration: Duration, state: State) -> _Found:
+        return Reading((f"require always for {duration.text} {state.at(ATOM)}",))
+
+    def finally_at_end(self, state: State) -> _Found:
+        return [
+            Reading((f"require eventually always {state.at(ATOM)}",), "if it must hold at the last step"),
+            Reading((f"reach {state.text}",), "if once is enough"),
+        ]
+
     # At least every so often.
 
     def every(self, state: State, duration: Duration) -> Every | None:
@@ -176,11 +196,19 @@ class Intervals(Rules):
 
     def apart(self, duration: Duration, *found: Term | State) -> _Found:
         states = [state for state in found if isinstance(state, State)]
-        if len({state.text for state in states}) != 1 or states[0].level > ATOM:
+        numbers = [number.text for number in found if isinstance(number, Term)]
+        if len({state.text for state in states}) != 1 or states[0].level > ATOM or numbers not in ([], ["2"]):
             return None
         return _not_again(states[0], duration)
 
     # How long.
+
+    def duration_at_least(self, state: State, sign: Term, duration: Duration) -> _Found:
+        if sign.text not in (">", ">="):
+            return None
+        clause = f"reach time_holding({state.text}) {sign.text} {duration.text}"
+        each = replace(self.lasts_at_least(state, duration), condition="if it must last so long each time")
+        return [Reading((clause,), "if it must last so long once"), each]
 
     def durations(self, least: Duration, most: Duration) -> tuple[Duration, Duration]:
         return least, most

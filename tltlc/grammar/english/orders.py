@@ -9,7 +9,7 @@ from typing import Final
 from tltlc.grammar.english.answers import is_negative
 from tltlc.grammar.english.events import Counted, Event, Held, as_state
 from tltlc.grammar.english.quantities import Duration
-from tltlc.grammar.english.rules import Goals, Reading, Rules, begun_text
+from tltlc.grammar.english.rules import Goals, Reading, Rules, are_simple, begun_text
 from tltlc.grammar.english.terminals import Term
 from tltlc.grammar.mistakes.sentences.states import AND, ATOM, OR, State, joined
 
@@ -33,6 +33,28 @@ class Orders(Rules):
         known = [state for state in states if state is not None]
         is_clear = not any(state.text in self.exclusive for state in known)
         return Goals(tuple(known)) if len(known) == len(states) and is_clear else None
+
+    def bare_goals(self, *events: Event) -> _Found:
+        goals = self.goals(*events)
+        if isinstance(goals, Goals):
+            return self.reach(goals)
+        return [reading for known in goals or () if isinstance(reading := self.reach(known), Reading)]
+
+    def goal_held(self, state: State, duration: Duration) -> _Found:
+        return self.bare_goals(Held(state, "", duration))
+
+    def goals_within(self, first: Event, second: Event, duration: Duration) -> _Found:
+        start, goal = _goal(first), _goal(second)
+        if start is None or goal is None or not are_simple(start, goal) or is_negative(goal):
+            return None
+        time, a, b = duration.text, start.at(ATOM), goal.at(ATOM)
+        return [
+            Reading((f"keep {a} implies eventually within {time} {b}",), "if it must follow each time"),
+            Reading(
+                (f"reach {a} then within {time} {b}",), f"if both are goals, and the time counts from `{start.text}`"
+            ),
+            Reading((f"require eventually within {time} ({b} and previously once {a})",), "from the first step"),
+        ]
 
     def repeated(self, *parts: Event | str) -> Goals | None:
         """Return goals that are repeated: `(a then b) 3 times`."""
@@ -107,6 +129,17 @@ class Orders(Rules):
 
     # The values of an enum.
 
+    def order(self, name: Term, *values: Term) -> _Found:
+        """Return both readings of `quest: none -> active -> done`: goals, or the order of all changes."""
+        goals, rule = [self.enum(name, value) for value in values], self.only_goes(name, *values)
+        if not isinstance(rule, Reading):
+            return None
+        clause = f"reach {' then '.join(state.text for state in goals if state is not None)}"
+        return [
+            Reading((clause,), "if it must go through them"),
+            Reading(rule.clauses, "if it may change in this order only"),
+        ]
+
     def only_goes(self, name: Term, *values: Term) -> _Found:
         if name.declared is None or len(values) < _FEWEST_VALUES:
             return None
@@ -121,7 +154,12 @@ class Orders(Rules):
             clauses.append(f"keep {name.text} is {value} implies weak_next {states.at(ATOM)}")
         return Reading(tuple(clauses))
 
-    def only_from(self, name: Term, value: Term, *before: Term) -> _Found:
+    def only_from(self, *parts: Term) -> _Found:
+        """Return the rule of `guard becomes chase only from suspicious`, or of `chase only from suspicious`."""
+        name = parts[0] if parts[0].kind == "ENUM" else self.enum_of(*parts)
+        if name is None:
+            return None
+        value, *before = parts[1:] if parts[0].kind == "ENUM" else parts
         state, origin = self.enum_begins(name, value), self.enum(name, *before)
         if state is None or origin is None:
             return None

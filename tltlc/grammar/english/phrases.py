@@ -36,7 +36,7 @@ PHRASES: Final[Mapping[str, str]] = {
     "between": "between|in between",
     "never": "never|never ever|at no time|under no circumstances|not ever",
     "avoid": "avoid|no|don't|do not|can't|cannot|forbid|prevent|without ever|must not|must never|should not|"
-    "should never|may not|may never|mustn't|shouldn't|won't",
+    "should never|forbidden|illegal|disallowed|not allowed|may not|may never|mustn't|shouldn't|won't",
     "must_not": _CANNOT,
     "must": _MUST,
     "may": "can|may|can only|may only|is allowed|allowed|can happen|can be|may be|is possible|may happen|"
@@ -49,7 +49,7 @@ PHRASES: Final[Mapping[str, str]] = {
     "next_step": "on the next step|at the next step|in the next step|next step|one step later|on next step|"
     "in next step|at next step|the step after|immediately after",
     "stops": "must stop|must end|is interrupted|is cancelled|stops being true|must be over",
-    "lasts": "lasts|last|must last|should last|takes|stays on|lasts for",
+    "lasts": "lasts|last|must last|should last|takes|stays on|lasts for|holds for|holds",
     "each": "each|every|any",
     "for": "for|for the next|for a full|for a total of|for next|for at least|at least for|for the following",
     "for_last": "for last|for previous|throughout last|during last|over last|for whole last|for at least last|for past",
@@ -70,7 +70,7 @@ PHRASES: Final[Mapping[str, str]] = {
     "on the same frame",
     "at_end": "at the end|at the last step|on the last step|at end|at last step|on last step",
     "at_start": "at the start|at the beginning|on the first step|at the first step|initially|at start|at beginning|"
-    "on first step|at first step|in the beginning",
+    "on first step|at first step|in the beginning|started with|began with|when started|had at start|had at beginning",
     "times": "times|time|x",
     "times_relation": "only",
     "not": "not|isn't|don't|doesn't|aren't|do not|does not",
@@ -94,14 +94,15 @@ PHRASES: Final[Mapping[str, str]] = {
     "any_order": "in any order|, in any order|in whatever order|in no particular order|regardless of order|"
     "in either order|no matter order|, in whatever order|order does not matter|, order doesn't matter|"
     ", order does not matter",
-    "cooldown": "has cooldown of|has cooldown|cooldown of|cooldown|cools down for|with cooldown of|has delay of",
+    "cooldown": "has cooldown of|has cooldown|cooldown of|cooldown|cooldown is|has cooldown time of|"
+    "cools down for|with cooldown of|has delay of",
     "meanwhile": "in between|between|between them|in between them|on way|meanwhile|along way|in meantime|between two",
     "only_goes": "only goes|goes only|only changes|changes only|only moves|moves only|only switches|switches only|"
-    "only cycles|cycles|cycles through|only cycles through|must go|should go|always goes|always changes|can only go|"
+    "only cycles|cycles|cycles through|only cycles through|always goes|always changes|can only go|"
     "may only go|must only go|can only change|may only change|only advances|only steps|only goes through|only runs|"
-    "must only change|goes always|only follows|must follow|only passes through|only progresses|progresses only",
+    "must only change|goes always|only follows|only passes through|only progresses|progresses only",
     "in_that_order": "in that order|in this order|in order|, in that order|, in this order",
-    "in_any": "within|in|in any|per|during|within any|every",
+    "in_any": "within|in|in any|per|during|within any|every|each",
     "was": "was|was previously|had been|was before",
     "has_been": "has been|have been|has been true|has been on|has been active|had been|has stayed|has remained|"
     "has held|has been in|has been at|has stayed in|has stayed at|held",
@@ -118,10 +119,10 @@ PHRASES: Final[Mapping[str, str]] = {
     "at the step before|at step before|was true on step before",
     "ever": "ever|has ever happened|has happened|has already happened",
     "previously": "previously|prev",
-    "at_most": "never rises above|never exceeds|never goes above|at most|"
+    "at_most": "at most|"
     "no more than|not more than|up to|maximum|max|maximum of|not above|less than or equal to|"
     "not exceed|no higher than|no longer than|not longer than",
-    "at_least": "never drops below|never falls below|never goes below|doesn't drop below|does not drop below|at least|"
+    "at_least": "at least|"
     "no less than|not less than|no fewer than|minimum|min|minimum of|not below|"
     "greater than or equal to|more than or equal to",
     "more": "more than|greater than|above|over|exceeds|higher than|longer than|exceed|bigger than|larger than",
@@ -134,6 +135,36 @@ PHRASES: Final[Mapping[str, str]] = {
     "doesn't change|do not change|is unchanged|stays constant|remains unchanged|stays unchanged|unchanged|constant|"
     "remains constant|keeps its value|is constant|frozen|is frozen|stays frozen|stays put|not change|fixed|is fixed",
     "changes": "changes|change",
+    "come": "go on|come on|be triggered|be raised|sound|ring|start|begin|come|trigger|appear|take place|be reached",
+    "go_off": "go off|goes off|went off",
+    "move": "go|goes|change|changes|switch|switches|jump|jumps|move|moves|pass|passes|transition|transitions|turn|"
+    "turns",
+    "to": "to|straight to|directly to|right to|immediately to|into|straight into|directly into",
+    "goes": "goes|go|must go|should go|goes through|must go through|order|goes in order|sequence|follows|must follow",
+    "next_value": "then|, then|and then|, and then|followed by",
+    "is_forbidden": "is forbidden|forbidden|is not allowed|not allowed|must not happen|is illegal|illegal|"
+    "is invalid|never happens|is impossible|must never happen|never|is never allowed|cannot happen",
+    "transition": "transition|transitions|direct transition|going|switching|changing|jumping|changes|"
+    "going straight|going directly",
+    "when_only": "when|if|while|during|whenever|as long as|in|at|with|in case",
+    "stays_so": "stays that way|stays so|remains so|remains that way|stays like that|stays forever|never ends|"
+    "never goes away|never stops|stays on forever|must stay so|must stay that way|stays true forever|"
+    "stays that way forever|is permanent|for ever",
+    "keeps": "stays|remains|is always|always|must stay|must remain|will stay|stays forever|keeps being|always stays",
+    "many": "many|much",
+    "end_with": "finish with|end with|end up with|finish having|finishes with|ends with|must end with|must finish with|"
+    "ends up with",
+    "finally": "finally|in the end|ultimately|at the very end|when it ends",
+    "never_above": "never rises above|never exceeds|never goes above",
+    "never_below": "never drops below|never falls below|never goes below|doesn't drop below|does not drop below",
+    "per_step": "per step|each step|in one step|every step|from one step to next|from step to step|per frame|"
+    "in single step|at once|between steps|between two steps|per tick|at time",
+    "pause_of": "cooldown of|cooldown|pause of|pause of at least|wait at least|wait|gap of|gap of at least",
+    "in_sequence": "consecutive|successive|next|another",
+    "means": "means|means that|implies that",
+    "count_of": "count|number of|number of times",
+    "duration_of": "duration|duration of|time_in|time in|time spent in|hold_time|length of|how long",
+    "later_or_ago": "later|ago|earlier|before|from now|afterwards",
     "previous": "previous|prev|old|previous value of|last value of|last",
 }  # fmt: skip
 """Maps each rule of the grammar to its phrases, which `|` separates."""

@@ -59,6 +59,7 @@ class Quantities:
 
     def __init__(self, names: DeclaredNames) -> None:
         self._step_s = names.step_s
+        self._declared = names
         self.limits: list[str] = []
         """Why no clause can say a sentence."""
         self.settled: dict[str, State] = {}
@@ -67,6 +68,10 @@ class Quantities:
         """The conditions that exactly one of several holds: as a goal, they may be about the whole episode."""
         self.assigned: set[str] = set()
         """The conditions that are written with `is true` or `is false`."""
+        self.is_lasting = False
+        """Whether the sentence says `stays`, `must` or `never`."""
+        self.counts: set[str] = set()
+        """The conditions of which `count(a)` may count the steps, or how often they begin."""
         self.changing: set[str] = set()
         """The conditions that a number changes, which no first step meets."""
 
@@ -98,6 +103,38 @@ class Quantities:
 
     def value_when(self, term: Term, name: Term, value: Term) -> None:
         self.value_at(term, Term("BOOL", f"{name.text} becomes {value.text}"))
+
+    def value_after(self, term: Term, duration: Duration) -> None:
+        self.limits.append(
+            f"no clause can say what `{term.text}` is {duration.text} later or earlier: let the game supply that "
+            f"number as a signal, and compare `{term.text}` with it"
+        )
+
+    def initial_at(self, term: Term, number: Term) -> Number | None:
+        return self.initial(term) if number.text in ("0", "zero") else None
+
+    def count_of(self, state: State) -> Number:
+        self.counts.add(state.text)
+        return Number(f"times({state.text})", Term("INT", f"times({state.text})"))
+
+    def count_condition(self, text: str) -> str:
+        """Return when `times(a)` in a clause is what `count(a)` counts; "" if that was not typed."""
+        counted = next((event for event in sorted(self.counts) if f"times({event})" in text), "")
+        return f"if it counts how often `{counted}` begins: no clause can count its steps" if counted else ""
+
+    def duration_of(self, state: State) -> Number:
+        return Number(f"time_holding({state.text})", Term("REAL", f"time_holding({state.text})"))
+
+    def absolute(self, number: Number) -> Number | None:
+        if number.term is None:
+            return None
+        return Number(f"abs({number.text})", Term(number.term.kind, f"abs({number.text})"))
+
+    def change_size(self, *parts: Term) -> Number | None:
+        term, other = (part for part in parts if part.kind in ("INT", "REAL"))
+        if term.text != other.text:
+            return None
+        return self.absolute(Number(f"{term.text} - previous({term.text})", Term(term.kind, term.text)))
 
     def initial(self, term: Term) -> Number:
         return Number(f"initial({term.text})", term)

@@ -16,6 +16,7 @@ from tltlc.grammar.english.periods import Periods
 from tltlc.grammar.english.phrases import grammar_text
 from tltlc.grammar.english.rules import Reading, Rules
 from tltlc.grammar.english.terminals import UNKNOWN, Term, known_terms, terms
+from tltlc.grammar.english.transitions import Transitions
 from tltlc.grammar.mistakes.sentences.states import State
 from tltlc.grammar.mistakes.sentences.validity import is_valid
 from tltlc.grammar.mistakes.sentences.words import Words
@@ -33,11 +34,13 @@ _EMPTY: Final = frozenset("it he she they we you your my has have had to do does
 """Words that say nothing by themselves."""
 _CONTENT: Final = frozenset((*_FIRST, UNKNOWN, "VALUE", "SIGN", "UNIT", "TIME_UNIT"))
 """The terminals that a sentence which is understood has in conditions and times alone."""
+_LASTING: Final = frozenset("stays stay remains remain must should never".split())
+"""Words of a condition alone that make it a rule for every step."""
 _MOST: Final = 64
 """The most ways in which the parts of one phrase are put together."""
 
 
-class Meanings(Periods, Orders):
+class Meanings(Periods, Orders, Transitions):
     """The meanings of all rules of the grammar."""
 
 
@@ -132,6 +135,7 @@ def _sentence(words: Words) -> Sentence:
     assert isinstance(tree, Tree)
     unique: dict[tuple[str, ...], Reading] = {}
     rules = Meanings(words.names)
+    rules.is_lasting = any(term.text in _LASTING for term in terminals)
     for reading in _values(tree.children[0], rules):
         unique.setdefault(reading.clauses, reading)
     if len(unique) > _MOST_READINGS:

@@ -67,8 +67,11 @@ class Rules(Answers):
         state = self.changes_by_compared(term, change, ">=", step)
         return None if state is None else Reading((f"avoid {state.text}",))
 
+    def keep_change_below(self, term: Term, change: Change, sign: str, step: Number) -> _Found:
+        return self.keep_change(term, change, {">": "<=", ">=": "<"}.get(sign, ""), step)
+
     def avoid_until(self, state: State, end: State) -> _Found:
-        if not _are_simple(state, end):
+        if not are_simple(state, end):
             return None
         return Reading((f"require {state.negated().at(ATOM)} weak_until {end.at(ATOM)}",))
 
@@ -76,7 +79,7 @@ class Rules(Answers):
         condition = as_state(event)
         return (
             None
-            if condition is None or not _are_simple(state, condition)
+            if condition is None or not are_simple(state, condition)
             else Reading((f"keep {state.at(OR)} implies {condition.at(OR)}",))
         )
 
@@ -88,13 +91,15 @@ class Rules(Answers):
         return Reading((f"require always for {duration.text} {state.negated().at(ATOM)}",))
 
     def keep_change(self, term: Term, change: Change, sign: str, step: Number) -> _Found:
+        if sign in ("<", "<=") and change == "varies":
+            return Reading((f"keep abs({term.text} - previous({term.text})) {sign} {step.text}",))
         if sign not in ("<", "<=") or change not in ("falls", "rises"):
             return None
         operator, relation = ("-", MIRRORED[sign]) if change == "falls" else ("+", sign)
         return Reading((f"keep {term.text} {relation} previous({term.text}) {operator} {step.text}",))
 
     def keep(self, state: State) -> _Found:
-        if state.text in self.changing:
+        if state.text in self.changing or self.count_condition(state.text):
             return None  # the first step has no value before
         return Reading((f"keep {state.text}",))
 
@@ -153,7 +158,7 @@ class Rules(Answers):
 
     def reach_without(self, event: Event, avoided: State) -> _Found:
         state = as_state(event)
-        if state is None or not _are_simple(state, avoided) or is_negative(state):
+        if state is None or not are_simple(state, avoided) or is_negative(state):
             return None
         return Reading((f"reach {state.text}", f"avoid {avoided.text}"))
 
@@ -223,7 +228,7 @@ class Rules(Answers):
 
     def last(self, answers: list[Asked], when: When, event: Event) -> _Found:
         state, answer = as_state(event), answers[0].answer
-        if state is None or not _are_simple(state, answer.state):
+        if state is None or not are_simple(state, answer.state):
             return None
         if answer.kind == "always" and answer.is_negative and when != "after" and not answers[1:]:
             return _conditional(when, event, [Asked(replace(answer, kind="now"))])
@@ -251,11 +256,12 @@ class Rules(Answers):
         condition = _at(answer.state.negated() if answer.is_negative else answer.state, condition)
         # `a and b unless c` is the same, whatever `unless` belongs to.
         is_clear = answer.is_negative and " or " not in f"{answer.state.text} {condition and condition.text}"
-        if condition is None or not (is_clear or _are_simple(condition, answer.state)):
+        if condition is None or not (is_clear or are_simple(condition, answer.state)):
             return None
         if answer.kind == "always" and answer.is_negative:
             return Reading((f"keep {answer.state.negated().at(OR)} implies {condition.at(OR)}",))
-        if answer.kind == "now" and answer.keyword == "keep":
+        is_change = answer.state.text in self.settled or answer.state.text in self.changing
+        if answer.kind == "now" and not is_change and answer.keyword != "reach" and not answers[0].is_formula:
             return Reading((f"keep {answer.state.at(OR)} or {condition.at(OR)}",))
         return None
 
@@ -274,7 +280,7 @@ def _at(event: State, condition: State) -> State | None:
     return None if condition.text.endswith(f" since {event.at(ATOM)})") else condition
 
 
-def _are_simple(*states: State) -> bool:
+def are_simple(*states: State) -> bool:
     """Whether no condition is made of several: a word between them may belong to the nearest alone."""
     return all(state.level == ATOM and not state.text.startswith("not (") for state in states)
 
@@ -333,8 +339,8 @@ def _answer_readings(when: When, event: Event, state: State, asked: Asked) -> li
         # `not a within 5 s` may only ask for a step without a.
         return not_again(state, forbidden, answer.time) if answer.time else []
     if asked.is_formula:
-        if when == "if" and "until " in answer.state.text:
-            return []  # the rule may end there, or what it asks for
+        if when == "if" and asked.until is not None:
+            return _ending(state, asked, *asked.until)
         if asked.is_once and not is_edge:
             state = State(f"begins {state.at(ATOM)}")
         return [Reading((f"keep {state.at(OR)} implies {answer.state.at(OR)}",), asked.condition)]
@@ -347,6 +353,16 @@ def _answer_readings(when: When, event: Event, state: State, asked: Asked) -> li
     if asked.condition:
         return []
     return _two_readings(state, answer)
+
+
+def _ending(event: State, asked: Asked, state: State, end: State) -> list[Reading]:
+    """Return the readings of `if a then b until c`: what it asks for may end there, or the rule itself."""
+    condition = asked.condition or f"from each step with `{event.text}` on"
+    return [
+        Reading((f"keep {event.at(OR)} implies {asked.answer.state.at(OR)}",), condition),
+        Reading((f"require ({event.at(OR)} implies {state.at(OR)}) weak_until {end.at(ATOM)}",),
+                f"if the rule ends at `{end.text}`"),
+    ]  # fmt: skip
 
 
 def begun_text(state: State) -> str:

@@ -33,6 +33,8 @@ _BEFORE_VALUES: Final = frozenset(
     for word in phrase.split()
 )
 """Words between an enum and its value."""
+CALLED: Final = frozenset("within after on when if next finally count duration cooldown abs time_in hold_time".split())
+"""Words of the grammar that people write with brackets behind them, as functions."""
 
 
 @record
@@ -63,7 +65,9 @@ def _terms(words: Words, vocabulary: Mapping[str, str]) -> Iterator[Term]:
     while at < len(words):
         word, start = words[at], at
         at += 1
-        if (letter := _LETTERS.get(words[start:at].text)) and letter not in words.names.names:
+        if word.text in CALLED and word.text not in words.names.names and word.text in vocabulary:
+            yield Term(vocabulary[word.text], word.text)
+        elif (letter := _LETTERS.get(words[start:at].text)) and letter not in words.names.names:
             yield Term(vocabulary[letter], letter)
         elif word.is_name:
             if _is_value(words, start):
@@ -71,11 +75,28 @@ def _terms(words: Words, vocabulary: Mapping[str, str]) -> Iterator[Term]:
                 continue
             at = call_end(words, start)
             yield _name(words[start:at]) or Term(UNKNOWN, words[start:at].text)
+            if at < len(words) and words[at].text == "'":
+                at += 1
+                yield Term("PRIME", "'")
+        elif word.type == "IMPLIES" and words[start:at].text != "implies":
+            yield Term("_ARROW", "->")
+        elif word.type == "OR" and words[start:at].text == "|":
+            yield Term("_BAR", "|")
+        elif word.text == "@":
+            yield Term("_AT_SIGN", "@")
+        elif word.text == "[" and (bound := _bound(words, at)):
+            at, number, unit = bound
+            yield from (Term(vocabulary["for" if words.word(start - 1) == "always" else "within"], "within"),)
+            yield from (Term("NUMBER", number), Term("TIME_UNIT", unit))
+        elif word.text in ("a", "an") and _unit(words.word(at)) in _TIME_UNITS:
+            yield Term("NUMBER", "1")
+            yield Term("TIME_UNIT", _unit(words.word(at)))
+            at += 1
         elif word.type in _SIGNS and word.text not in ("min", "max"):
             if word.type == "EQUAL" and at < len(words) and words[at].type == "MORE":
                 at += 1
                 yield Term("_ARROW", "=>")
-            else:
+            elif not (word.type in ("LESS", "AT_MOST") and _is_time_limit(words, start)):
                 yield Term(_SIGNS[word.type], word.text)
         elif word.text == "one" and words.word(at) == "of":
             yield Term(vocabulary["one"], "one")
@@ -85,6 +106,9 @@ def _terms(words: Words, vocabulary: Mapping[str, str]) -> Iterator[Term]:
             yield Term("VALUE", words[start:at].text)
         elif start and words.number(start - 1) and (unit := _unit(word.text)) and word.text not in words.names.names:
             yield Term("TIME_UNIT" if unit in _TIME_UNITS else "UNIT", unit)
+        elif words.word(start - 1) in ("per", "every", "each") and _unit(word.text) in ("s", "min", "h"):
+            yield Term("NUMBER", "1")
+            yield Term("TIME_UNIT", _unit(word.text))
         elif word.type == "UNIT" or (word.text == "%" and start):
             yield Term("UNIT", word.text)
         elif word.text in vocabulary:
@@ -102,6 +126,24 @@ def _is_value(words: Words, at: int) -> bool:
     return declared is not None and declared.type == "enum" and words[at].text in declared.values
 
 
+def _is_time_limit(words: Words, at: int) -> bool:
+    """Whether a sign stands between `in` and a time: `in < 90 s`."""
+    is_unit = at + 2 < len(words) and _unit(words[at + 2].text) in _TIME_UNITS
+    return words.word(at - 1) in ("in", "within") and bool(words.number(at + 1)) and is_unit
+
+
+def _bound(words: Words, at: int) -> tuple[int, str, str] | None:
+    """Return the index after `[<=5 s]` or `[0, 5 s]`, and the number and the unit of its time; else None.
+
+    ``at`` is the index after the bracket.
+    """
+    first = words[at : at + 2].text.replace(" ", "")
+    start = at + 2 if first == "0," else at + 1
+    number, unit = words.number(start), _unit(words[start + 1].text) if start + 2 < len(words) else ""
+    is_bound = first == "0," or words[at : at + 1].text in ("<=", "<")
+    return (start + 3, number, unit) if is_bound and number and unit and words[start + 2].text == "]" else None
+
+
 def _unit(word: str) -> str:
     unit = UNITS_ELSEWHERE.get(word.lower(), word)
     return unit if unit in (*_TIME_UNITS, "Hz") else ""
@@ -116,7 +158,7 @@ def _name(words: Words) -> Term | None:
         of = inner.declared(0) if len(inner) == 1 else None
         if name in _PREVIOUS and of is not None and of.type == "enum":
             return Term("PREVIOUS_ENUM", inner.text, of)
-        if name.startswith(("previous(", "initial(")):
+        if name.startswith(("previous(", "initial(", "lowest(", "highest(")):
             return _value_of(words.names.names.get(name.partition("(")[2].rstrip(")")), text)
         if name.startswith("times("):
             return Term("INT", text)

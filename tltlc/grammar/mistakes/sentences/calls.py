@@ -14,6 +14,10 @@ _EDGES: Final = {
     **dict.fromkeys(("fall", "falling", "falls", "fell", "falling_edge"), "ends"),
 }
 """Maps functions for a change of a bool to the operator that says the same."""
+_EXTREMES: Final = {
+    **dict.fromkeys(("min", "minimum", "lowest", "smallest"), "lowest"),
+    **dict.fromkeys(("max", "maximum", "highest", "largest", "biggest"), "highest"),
+}
 FOREIGN: Final = frozenset((*_BEFORE, *_FIRST, *_EDGES, "count"))
 """The functions of other languages that are rewritten."""
 
@@ -47,6 +51,8 @@ def _own(words: Words, at: int) -> tuple[int, list[Word]]:
     text = words[at].text
     if text in ("count", "times") and text not in words.names.names and (counted := _counted(words, at)):
         return counted
+    if declared_so_far := _so_far(words, at):
+        return declared_so_far
     if text == "last" and words.word(at - 1) == "since":
         return at + 1, [words[at]]
     is_call = at + 1 < len(words) and words[at + 1].text == "("
@@ -64,6 +70,16 @@ def _own(words: Words, at: int) -> tuple[int, list[Word]]:
         name = "initial" if text in _FIRST else "previous"
         return stop, [_word(f"{name}({inner.text})", words[at], is_name=True)]
     return at + 1, [words[at]]
+
+
+def _so_far(words: Words, at: int) -> tuple[int, list[Word]] | None:
+    """Return `lowest(x)` for `min(x so far)`."""
+    stop, function = call_end(words, at), _EXTREMES.get(words[at].text.lower(), "")
+    inner = words[at + 2 : stop - 1]
+    if not function or len(inner) < 3 or [inner.word(-2 % len(inner)), inner.word(len(inner) - 1)] != ["so", "far"]:
+        return None
+    name = inner[:-2]
+    return (stop, [_word(f"{function}({name.text})", words[at], is_name=True)]) if is_value(name) else None
 
 
 def _counted(words: Words, at: int) -> tuple[int, list[Word]] | None:

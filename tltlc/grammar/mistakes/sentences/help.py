@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import Final
 
 from tltlc.core.record import replace
@@ -10,6 +11,7 @@ from tltlc.grammar.english.clauses import plain_text
 from tltlc.grammar.english.notes import notes
 from tltlc.grammar.english.readings import sentence, sentence_forms
 from tltlc.grammar.english.rules import Reading
+from tltlc.grammar.english.terminals import CALLED
 from tltlc.grammar.lexer import END, tokenize
 from tltlc.grammar.mistakes.clauses import is_own_line
 from tltlc.grammar.mistakes.declared_names import declared_names
@@ -34,6 +36,8 @@ _ENGLISH_ALONE: Final = phrases(
     "since", "requires", "needs", "falls below", "drops below", "goes below", "rises above", "goes above"
 )
 """Words whose meaning in English is not that of an operator, or more than that of a comparison."""
+_GOALS: Final = ("reach ", "require eventually ")
+"""What clauses begin with that ask for something once, as verbs do."""
 _UNITS: Final = frozenset((*REAL_TIME, "step", "steps"))
 
 
@@ -82,11 +86,14 @@ def _with_reading(
         (is_whole and not _is_foreign(known.fixes[0], failure)) or _has_readings(failure, known.help or "")
     ):
         return known
-    if not words or words.word(0) == "require" or (is_imperative(words) and words.word(0) not in KEYWORDS):
+    if not words or words.word(0) == "require":
         return known
     found = sentence(words)
     if not found.readings and not found.limit:
         found = sentence(with_names(words))
+    is_goal = bool(found.readings) and all(reading.clauses[0].startswith(_GOALS) for reading in found.readings)
+    if is_imperative(words) and words.word(0) not in KEYWORDS and not is_goal and not found.limit:
+        return known
     if (
         is_whole
         and not is_english
@@ -118,11 +125,13 @@ def _is_particular(failure: ParseFailure, help_: str | None) -> bool:
 
 
 def _is_foreign(fix: Fix, failure: ParseFailure) -> bool:
-    """Whether a fix has words of other languages, at which the next error would be: `==` of an enum, `prev(x)`."""
-    names = declared_names(failure.source).names
-    tokens = [token for edit in fix.edits for token in tokenize(edit.text).tokens]
+    """Whether a fix leaves words of other languages, at which the next error would be: `==` of an enum, `prev(x)`."""
+    names, tokens = declared_names(failure.source).names, tokenize(mended(failure, fix)).tokens
     return any(
-        token.type in ("EQUALS", "UNEQUAL") or (token.text in SYNONYMS and token.text not in names) for token in tokens
+        token.type in ("EQUALS", "UNEQUAL")
+        or (token.text in SYNONYMS and token.text not in names)
+        or (token.text in CALLED and token.type == "NAME" and following.text == "(")
+        for token, following in pairwise(tokens)
     )
 
 
@@ -150,7 +159,7 @@ def _with_readings(failure: ParseFailure, diagnostic: Diagnostic, found: tuple[R
     if not valid:
         return diagnostic
     texts = [" and ".join(f"`{clause}`" for clause in reading.clauses) for reading in valid]
-    if len(valid) > 1:
+    if len(valid) > 1 or valid[0].condition:
         described = [f"{text} {reading.condition}".rstrip() for text, reading in zip(texts, valid, strict=True)]
         return replace(diagnostic, help=f"write {', or '.join(described)}", fixes=())
     span = span_of(failure.tokens[:-1])

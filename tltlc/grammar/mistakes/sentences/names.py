@@ -159,7 +159,10 @@ def _replaced(words: Words, at: int, before: list[Word]) -> tuple[int, list[Word
         declared = words.names.names[found.name]
         if declared.type == "enum":
             value = next(value for value in declared.values if stem(value) == stem(group[-1].text))
-            replaced += [Word(text, "NAME", False, start, end, True) for text in ("is", value)]
+            named = [word.text for word in before[-3:] if word.is_name]
+            is_said = named[-1:] == [found.name] and not {"and", "or", ","} & {word.text for word in before[-2:]}
+            replaced = [] if is_said else [*replaced, Word("is", "NAME", False, start, end, True)]
+            replaced.append(Word(value, "NAME", False, start, end, True))
         is_place = group.word(0) in ("in", "at", "on") or (parts_of(found.name)[0] in PLACE and not _brings(group))
         if declared.type == "int" and before and before[-1].text in ("reach", "hit", "get") and words.number(stop):
             replaced.append(Word(">=", "AT_LEAST", False, end, end, True))
@@ -291,12 +294,16 @@ def _number_of(stems: list[str], names: Mapping[str, DeclaredName], number: str)
 def _value_of(stems: list[str], names: Mapping[str, DeclaredName], group: Words, before: str) -> _Found | None:
     """Return the enum of a value that stands alone: `pistol` for `weapon is pistol`."""
     stems = stems if stems[0] not in EMPTY_VERBS else stems[1:]
-    if len(stems) != 1 or not stems or before in ("is", "==", "=", "!=", "not", "never", "in", "to"):
+    # A value is spelt otherwise as a verb alone: `blu` may be a slip of the pen.
+    is_value = not group[-1].text.endswith(("ing", "s")) or any(
+        group[-1].text in declared.values for declared in names.values()
+    )
+    if len(stems) != 1 or (is_value and before in ("is", "==", "=", "!=", "not", "never", "in", "to")):
         return None
     enums = [
         name
         for name, declared in names.items()
-        if _is_plain(declared) and stems[0] in map(stem, declared.values) and before != name
+        if _is_plain(declared) and stems[0] in map(stem, declared.values) and (before != name or not is_value)
     ]
     listed = [name for name in enums if [stem(value) for value in names[name].values].count(stems[0]) == 1]
     name = _only(listed) if len(listed) == len(enums) else None

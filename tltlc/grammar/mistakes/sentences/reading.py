@@ -38,6 +38,8 @@ _CARRIED: Final = phrases("and bring it", "and carry it", "and bring them", "and
 _CLEAR: Final = phrases("infinitely often")
 """Words of sentences whose help in the language would miss what is meant."""
 _HEADINGS: Final = ("scenario", "feature", "background", "example")
+_RULE_LABELS: Final = (*PROHIBITIONS, *phrases("not", "always", "eventually", "forbidden", "illegal", "disallowed"))
+"""What says before a colon what must be, and so is no label."""
 _FORMS: Final = "begin with what must be: `reach a`, `keep a`, `avoid a`, `keep a implies b`"
 LONGEST: Final = 60
 """The most tokens of a sentence; a longer clause is hardly one."""
@@ -204,7 +206,8 @@ def _without_label(words: Words) -> Words:
     if found is None:
         return words
     is_condition = words.word(0) in ("if", "when", "whenever", "while", "after", "once", "all", "any")
-    is_label = not any(word.is_name for word in words[: found[0]])
+    label = words[: found[0]]
+    is_label = tuple(word.text for word in label) not in _RULE_LABELS and not any(word.is_name for word in label)
     rest = words[found[0] + 1 :]
     return rest if is_label or (rest.word(0) in KEYWORDS and not is_condition) else words
 

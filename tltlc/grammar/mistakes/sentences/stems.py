@@ -41,6 +41,7 @@ _IRREGULAR: Final[Mapping[str, str]] = {
         "sell": "sell sells sold selling",
         "lose": "lose loses lost losing",
         "hold": "hold holds held holding",
+        "meet": "meet meets met meeting",
         "bring": "bring brings brought bringing",
     }.items()
     for form in forms.split()

@@ -1,0 +1,84 @@
+"""What rules about changes mean: which values may not follow which, what stays, and how numbers change."""
+
+from __future__ import annotations
+
+from tltlc.core.record import replace
+from tltlc.grammar.english.answers import Asked, is_negative
+from tltlc.grammar.english.quantities import Change, Number
+from tltlc.grammar.english.rules import Reading, Rules
+from tltlc.grammar.english.terminals import Term
+from tltlc.grammar.mistakes.sentences.answers import Answer
+from tltlc.grammar.mistakes.sentences.states import ATOM, OR, RULE, State
+
+
+class Transitions(Rules):
+    """The meanings of the rules about changes of an enum, of what stays, and of changes of numbers."""
+
+    # Which values of an enum may follow each other.
+
+    def move(self, *parts: Term) -> State | None:
+        """Return the condition of `off -> full`: the step after the first value has the second."""
+        name = parts[0] if parts[0].kind == "ENUM" else self.enum_of(*parts)
+        start, end = parts[-2:]
+        return None if name is None else self.enum_changes(name, start, end)
+
+    def avoid_move(self, state: State) -> Reading:
+        return Reading((f"avoid {state.text}",))
+
+    def avoid_move_of(self, *parts: Term) -> Reading | None:
+        state = self.move(*parts)
+        return None if state is None else self.avoid_move(state)
+
+    # What stays.
+
+    def bare(self, state: State) -> Reading | list[Reading] | None:
+        """Return the readings of a condition alone: a goal, or a rule for every step."""
+        text = state.text
+        if text in self.changing or text in self.settled or text.isidentifier() or is_negative(state):
+            return None
+        keep, reach = Reading((f"keep {text}",), "for every step"), Reading((f"reach {text}",), "if it is a goal")
+        is_most = state.opposite in (text.replace("<=", ">"), text.replace("<", ">="))
+        if text.startswith("times("):
+            return replace(keep if is_most else reach, condition=self.count_condition(text))
+        if "previous(" in text or "lowest(" in text or "highest(" in text or state.level == RULE or self.is_lasting:
+            return replace(keep, condition="")
+        if text.startswith("time_holding("):
+            return replace(keep, condition="") if is_most else None
+        return [reach, keep]
+
+    def stays_so(self, state: State) -> Reading:
+        state = self.settled.get(state.text, state)
+        return Reading((f"keep {state.at(OR)} implies always {state.at(ATOM)}",))
+
+    def stays_value(self, name: Term, value: Term, kept: Term) -> Reading | None:
+        state = self.enum(name, value)
+        return None if state is None or value.text != kept.text else self.stays_so(state)
+
+    # Numbers.
+
+    def as_at_start(self, sign: str, term: Term) -> State | None:
+        return self.compared(Number(term.text, term), sign, self.initial(term))
+
+    def as_many_as_at_start(self, term: Term) -> State | None:
+        return self.as_at_start("==", term)
+
+    def more_than_at_start(self, term: Term) -> State | None:
+        return self.as_at_start(">", term)
+
+    def less_than_at_start(self, term: Term) -> State | None:
+        return self.as_at_start("<", term)
+
+    def change_below(self, term: Term, change: Change, sign: str, step: Number) -> Asked | None:
+        """Return the answer of `coins may not grow by more than 2`."""
+        if sign == ">" and change == "varies":
+            return Asked(Answer("now", State(f"abs({term.text} - previous({term.text})) <= {step.text}")))
+        state = self.changes_by_compared(term, change, sign, step)
+        return None if state is None else Asked(Answer("now", state.negated()))
+
+    # What goes off.
+
+    def goes_off(self, term: Term) -> list[Reading]:
+        return [
+            Reading((f"avoid {term.text}",), f"if `{term.text}` must not come"),
+            Reading((f"avoid ends {term.text}",), "if it must not end"),
+        ]
