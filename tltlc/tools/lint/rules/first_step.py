@@ -54,4 +54,4 @@ def _finding(temporal: ScopedExpression, tree: Unary, following: list[ScopedExpr
     return RuleFinding("this is only about the first step", (label,), help_)
 
 
-RULE = LintRule("TLT0429", "warning", check)
+RULE = LintRule("TLT0429", "warning", check, supersedes=("TLT0446",))

@@ -1,0 +1,108 @@
+"""TLT0446: words that apply to less than they seem to."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+
+from tests.tools.lint.helpers import RANGES, block, codes, findings_in, labelled_texts, labelled_texts_in_block
+from tltlc.pipeline import compile_text
+from tltlc.tools.diff.relation import compare
+
+BEFORE = f"clock 10 Hz\n{RANGES}"
+
+
+def readings(clause: str) -> list[str]:
+    """Return the two readings that the help names, each as the clause to write."""
+    (finding,) = (found for found in findings_in(block(clause, before=BEFORE)) if found.diagnostic.code == "TLT0446")
+    label = finding.diagnostic.labels[0]
+    marked = label.source.slice(label.span)
+    return [clause.replace(marked, reading) for reading in re.findall("`([^`]*)`", finding.diagnostic.help or "")]
+
+
+@pytest.mark.parametrize(
+    ("clause", "wide", "narrow"),
+    [
+        (
+            "keep a implies eventually within 6 s b or c",
+            "keep a implies eventually within 6 s (b or c)",
+            "keep a implies (eventually within 6 s b) or c",
+        ),
+        ("keep once a since b", "keep once (a since b)", "keep (once a) since b"),
+        ("require always a until b", "require always (a until b)", "require (always a) until b"),
+        (
+            "keep a implies historically for 1 s b or c",
+            "keep a implies historically for 1 s (b or c)",
+            "keep a implies (historically for 1 s b) or c",
+        ),
+        ("keep c or eventually a or b", "keep c or eventually (a or b)", "keep c or (eventually a) or b"),
+        (
+            "keep a implies always b or not c",
+            "keep a implies always (b or not c)",
+            "keep a implies (always b) or not c",
+        ),
+        (
+            "keep a implies eventually b and c and x > 3",
+            "keep a implies eventually (b and c and x > 3)",
+            "keep a implies (eventually b) and c and x > 3",
+        ),
+        (
+            "keep a implies eventually b or begins c",
+            "keep a implies eventually (b or begins c)",
+            "keep a implies (eventually b) or begins c",
+        ),
+    ],
+)
+def test_the_help_names_both_readings_with_brackets(clause: str, wide: str, narrow: str) -> None:
+    assert readings(clause) == [wide, narrow]
+    typed, whole, part = (compile_text(block(text, before=BEFORE))[0] for text in (clause, wide, narrow))
+    assert compare(typed, part).relation == "equivalent"
+    assert compare(typed, whole).relation != "equivalent"
+    assert "TLT0446" not in codes(block(wide, narrow, before=BEFORE))
+
+
+@pytest.mark.parametrize(
+    "clause",
+    [
+        "keep a implies eventually b and always c",
+        "keep a implies eventually b or not once c",
+        "keep a implies eventually b or (a until c)",
+        "keep a implies F b or c",
+        "keep a implies (eventually b) or c",
+        "keep a implies eventually (b) or c",
+        "keep a implies (eventually b or once c)",
+        "keep a or eventually b",
+        "keep once a or b",
+        "keep once within 1 s a and b",
+        "keep always a implies b",
+        "keep next a or b",
+        "keep a implies always for 1 s not b and true",
+    ],
+)
+def test_brackets_letters_and_operands_with_such_a_word_are_left_out(clause: str) -> None:
+    assert labelled_texts_in_block("TLT0446", clause, before=BEFORE) == []
+
+
+def test_a_long_chain_is_read_once() -> None:
+    clause = f"keep {'c or ' * 500}eventually a or b"
+    assert labelled_texts_in_block("TLT0446", clause, before=BEFORE) == ["eventually a or b"]
+
+
+def test_named_formulas_and_specs_without_a_block_are_read_too() -> None:
+    text = f"{RANGES}let soon(p) = eventually p or a\nspec s = always soon(b) and c\n"
+    assert labelled_texts(text, "TLT0446") == ["eventually p or a"]
+    assert labelled_texts(f"{RANGES}spec s = a implies always b and c\n", "TLT0446") == ["always b and c"]
+
+
+def test_the_first_step_is_the_more_specific_reason() -> None:
+    text = block("require eventually a and b", before=RANGES)
+    assert "TLT0429" in codes(text) and "TLT0446" not in codes(text)
+
+
+@pytest.mark.parametrize("clause", ["keep once within 1 s a weak_until b", "require historically a until b"])
+def test_no_reading_is_named_in_which_the_past_contains_later_steps(clause: str) -> None:
+    (narrow, _) = readings(clause)
+    typed, part = (compile_text(block(text, before=BEFORE))[0] for text in (clause, narrow))
+    assert compare(typed, part).relation == "equivalent"
+    assert "TLT0446" not in codes(block(narrow, before=BEFORE))

@@ -1,0 +1,101 @@
+"""TLT0446: a word that applies to less than it seems to, as in `eventually a or b`, read as `(eventually a) or b`."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from itertools import takewhile
+from typing import Final
+
+from tltlc.core.source import SourceFile, Span
+from tltlc.diagnostics.diagnostic import Label
+from tltlc.grammar import walk
+from tltlc.grammar.tree import BinaryExpr, Constant, Expr, GroupExpr, LetDecl, Quantified, SpecDecl, Unary
+from tltlc.tools.lint.file_view import FileView, without_brackets
+from tltlc.tools.lint.rule import LintRule, RuleFinding
+
+_CHAINS: Final = ("and", "or")
+_ORDERED: Final = ("U", "W", "since")
+_FUTURE_WORDS: Final = ("eventually", "always")
+_PAST_WORDS: Final = ("once", "historically")
+_FUTURE: Final = ("F", "G", "X", "N", "U", "W", "R", "M", "then", "within")
+_TEMPORAL: Final = (*_FUTURE, "since", "previously", *_PAST_WORDS)
+
+
+def check(view: FileView) -> Iterator[RuleFinding]:
+    """Yield a finding for each word that ends before an infix operator, although the operand after it has no such word.
+
+    The words are `eventually` and `always` before `and`, `or`, `until`, `weak_until` and `since`; `once` and
+    `historically` before the last three, and with a bound before `or`. The letters F and G are left out, and so are
+    operands in brackets. They show how far the word applies.
+    """
+    for declaration in view.module.declarations:
+        if isinstance(declaration, (LetDecl, SpecDecl)):
+            for expression in walk.expressions(declaration):
+                yield from _findings(expression, view.source)
+
+
+def _findings(expression: Expr, source: SourceFile) -> Iterator[RuleFinding]:
+    inner: set[int] = set()
+    for part in walk.parts(expression):
+        if not isinstance(part, BinaryExpr) or part.op not in (*_CHAINS, *_ORDERED):
+            continue
+        operands = [part.left, part.right]
+        if part.op in _CHAINS:
+            inner |= {id(link) for link in operands if isinstance(link, BinaryExpr) and link.op == part.op}
+            operands = walk.operands(part, part.op) if id(part) not in inner else []
+        for place, operand in enumerate(operands):
+            if isinstance(operand, Unary) and _is_narrow(operand, part.op, source):
+                following = [*takewhile(_is_about_one_step, operands[place + 1 :])]
+                if following:
+                    is_past = operand.op in _PAST_WORDS
+                    yield _finding(operand, following, source, one_reading=is_past and _has_future(part))
+
+
+def _is_narrow(operand: Unary, op: str, source: SourceFile) -> bool:
+    """Whether an operand of an infix operator begins with a word that seems to apply to the whole."""
+    word = source.slice(operand.op_span)
+    if isinstance(operand.operand, GroupExpr):
+        return False
+    if word in _FUTURE_WORDS:
+        return True
+    return word in _PAST_WORDS and (op in _ORDERED or (op == "or" and operand.bound is not None))
+
+
+def _is_about_one_step(tree: Expr) -> bool:
+    """Whether an operand has no word for other steps as its outermost operator, apart from `not` and quantifiers.
+
+    The constants do not count as operands: with them, all readings are the same.
+    """
+    tree = without_brackets(tree)
+    while isinstance(tree, Quantified) or (isinstance(tree, Unary) and tree.op == "not"):
+        tree = without_brackets(tree.body if isinstance(tree, Quantified) else tree.operand)
+    return not (isinstance(tree, Constant) or (isinstance(tree, (Unary, BinaryExpr)) and tree.op in _TEMPORAL))
+
+
+def _has_future(tree: Expr) -> bool:
+    """Whether an expression has an operator about later steps, which no operator about the past may contain."""
+    return any(isinstance(part, (Unary, BinaryExpr)) and part.op in _FUTURE for part in walk.parts(tree))
+
+
+def _finding(operator: Unary, following: Sequence[Expr], source: SourceFile, *, one_reading: bool) -> RuleFinding:
+    """Return the finding for an operator that ends before an infix operator and its operands ``following``.
+
+    If ``one_reading``, the operator cannot apply to all of them.
+    """
+    word, operand, end = source.slice(operator.op_span), operator.operand, following[-1].span.end
+
+    def text(start: int, end: int) -> str:
+        return " ".join(source.text[start:end].split())
+
+    first = text(operand.span.start, operand.span.end)
+    wide = f"{text(operator.span.start, operand.span.start)} ({text(operand.span.start, end)})"
+    narrow = f"({text(operator.span.start, operator.span.end)}) {text(operator.span.end, end)}"
+    label = Label(source, Span(operator.span.start, end), f"read as `{narrow}`")
+    together = "both" if len(following) == 1 else "all of them"
+    help_ = f"write `{wide}` if it applies to {together}, `{narrow}` if it does not"
+    if one_reading:
+        help_ = f"write `{narrow}` if you mean this; `{word}` cannot apply to what comes later"
+    return RuleFinding(f"`{word}` applies to `{first}` alone", (label,), help_)
+
+
+RULE = LintRule("TLT0446", "warning", check)
