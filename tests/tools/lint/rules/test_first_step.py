@@ -5,7 +5,15 @@ from __future__ import annotations
 import pytest
 
 import tltlc
-from tests.tools.lint.helpers import PLACES, SIGNALS, block, codes, findings_in, labelled_texts_in_block
+from tests.tools.lint.helpers import (
+    PLACES,
+    SIGNALS,
+    accepted_traces,
+    block,
+    codes,
+    findings_in,
+    labelled_texts_in_block,
+)
 from tltlc.automaton.compare import are_equivalent
 
 
@@ -48,18 +56,41 @@ def test_operands_outside_a_temporal_operator_are_reported(formula: str, expecte
 
 
 @pytest.mark.parametrize(
-    ("formula", "correction"),
+    ("formula", "correction", "operand"),
     [
-        ("a and b", "for every step, write `keep a and b`; for some step, write `reach a and b`"),
+        ("a and b", "for every step, write `keep a and b`; for some step, write `reach a and b`", "(a and b)"),
+        ("not a", "for every step, write `keep not a`; for some step, write `reach not a`", "not a"),
         # As a goal, it would be met as soon as `a` is false.
-        ("a implies b", "for every step, write `keep a implies b`"),
-        ("(a implies b)", "for every step, write `keep a implies b`"),
-        ("(a implies b) and (b -> c)", "for every step, write `keep (a implies b) and (b -> c)`"),
-        ("all e in (x, y): at(e) -> a", "for every step, write `keep all e in (x, y): at(e) -> a`"),
-        ("a and (a -> b)", "for every step, write `keep a and (a -> b)`; for some step, write `reach a and (a -> b)`"),
+        ("a implies b", "for every step, write `keep a implies b`", "(a implies b)"),
+        ("(a implies b)", "for every step, write `keep a implies b`", "(a implies b)"),
+        ("(a implies b) and (b -> c)", "for every step, write `keep (a implies b) and (b -> c)`", None),
+        ("all e in (x, y): at(e) -> a", "for every step, write `keep all e in (x, y): at(e) -> a`", None),
+        (
+            "a and (a -> b)",
+            "for every step, write `keep a and (a -> b)`; for some step, write `reach a and (a -> b)`",
+            None,
+        ),
     ],
 )
-def test_the_suggestion_is_no_goal_that_a_false_condition_meets(formula: str, correction: str) -> None:
+def test_the_suggestion_is_no_goal_that_a_false_condition_meets(
+    formula: str, correction: str, operand: str | None
+) -> None:
     text = block("reach c", f"require {formula}", before=SIGNALS + PLACES)
     (finding,) = (candidate for candidate in findings_in(text) if candidate.diagnostic.code == "TLT0429")
-    assert finding.diagnostic.help == correction
+    last = f"require eventually always {operand or f'({formula})'}"
+    assert finding.diagnostic.help == f"{correction}; for the last step, write `{last}`"
+    assert not {"TLT0424", "TLT0429"} & {*codes(block("reach c", last, before=SIGNALS + PLACES))}
+
+
+def test_the_last_step_is_the_last_step() -> None:
+    accepted = accepted_traces("signal a: bool signal b: bool\nspec s = eventually always (a and b)", "ab", 4)
+    assert {trace for trace in accepted if trace[-1] != "ab"} == set()
+    assert len(accepted) == sum(4**length for length in range(4))
+
+
+def test_over_infinite_traces_there_is_no_last_step() -> None:
+    text = block("semantics infinite", "require a", before=SIGNALS).replace(
+        "    limit 9 steps\n    judge at goal\n", ""
+    )
+    (finding,) = (candidate for candidate in findings_in(text) if candidate.diagnostic.code == "TLT0429")
+    assert finding.diagnostic.help == "for every step, write `keep a`; for some step, write `reach a`"

@@ -30,6 +30,8 @@ def check(view: FileView) -> Iterator[RuleFinding]:
                 help_ = f"for every step, write `keep {value.text}`"
                 if not goals.consists_of_implications(value):
                     help_ += f"; for some step, write `reach {value.text}`"
+                if spec.spec.semantics == "finite":
+                    help_ += f"; for the last step, write `require eventually always {operand_text(value)}`"
                 yield RuleFinding("this is only about the first step", (label,), help_)
                 continue
             for place, part in enumerate(parts):
