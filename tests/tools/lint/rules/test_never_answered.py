@@ -20,6 +20,8 @@ from tests.tools.lint.helpers import (
 )
 from tests.tools.lint.strategies import World, specs
 from tltlc.logic.formula import and_
+from tltlc.pipeline import compile_text
+from tltlc.tools.diff.relation import compare
 from tltlc.tools.lint.rules import never_answered
 
 
@@ -113,7 +115,7 @@ ALTOGETHER = "to forbid `a` altogether, write `avoid a`"
         ("keep a implies eventually within 1 s a", None),
         *(
             (
-                f"keep {condition} implies {timer} >= 2 s",
+                f"keep {condition} implies {timer} > 2 s",
                 f"`{timer}` is 0 s at that step; to forbid a second beginning so soon, write "
                 "`avoid (begins a) then within 2 s (begins a)`; "
                 f"to forbid `{condition}` altogether, write `avoid {condition}`",
@@ -130,8 +132,8 @@ ALTOGETHER = "to forbid `a` altogether, write `avoid a`"
         ("keep not a and time_holding(a) < 2 s", None),
         ("keep ends a implies previously (time_holding(a) >= 2 s)", None),
         (
-            "keep ends a implies time_holding(a) >= 2 s",
-            "`time_holding(a)` is 0 s at that step: write `previously (time_holding(a) >= 2 s)`; "
+            "keep ends a implies time_holding(a) > 2 s",
+            "`time_holding(a)` is 0 s at that step: write `previously (time_holding(a) > 2 s)`; "
             "to forbid `ends a` altogether, write `avoid ends a`",
         ),
         ("keep not a implies time_holding(a) < 2 s", None),
@@ -262,3 +264,70 @@ def test_the_suggested_rule_accepts_traces_whose_stretches_last_long_enough(seco
             stretches = [len([*samples]) for is_a, samples in groupby(trace) if is_a]
             whole = stretches[:-1] if trace[-1] else stretches
             assert (trace in accepted) == all(samples >= least for samples in whole)
+
+
+TIMED = "{}\nsignal a: bool\nspec s {{\n    limit 3600 steps\n    judge at limit\n    {}\n}}\n"
+
+
+def quoted(clause: str, clock: str) -> list[str]:
+    """Return what the help of TLT0432 names, between backquotes."""
+    (finding,) = (found for found in findings_in(TIMED.format(clock, clause)) if found.diagnostic.code == "TLT0432")
+    return re.findall("`([^`]*)`", finding.diagnostic.help or "")
+
+
+@pytest.mark.parametrize(
+    ("clock", "comparison", "time", "steps"),
+    [
+        ("clock 10 Hz", ">= 2 s", "1.9 s", 19),
+        ("clock 10 Hz", "> 2 s", "2 s", 20),
+        ("clock 10 Hz", ">= 2.05 s", "2 s", 20),
+        ("clock 10 Hz", "> 2.05 s", "2 s", 20),
+        ("clock 60 Hz", ">= 2 s", "1.98 s", 119),
+        ("clock 60 Hz", ">= 500 ms", "483 ms", 29),
+        ("clock 10 Hz", ">= 0.1 min", "0.098 min", 59),
+        ("clock 1 Hz", ">= 3 s", "2 s", 2),
+        ("clock varies", ">= 2 s", "2 s", None),
+    ],
+)
+def test_a_second_beginning_is_forbidden_as_long_as_the_comparison_forbids_it(
+    clock: str, comparison: str, time: str, steps: int | None
+) -> None:
+    offered = quoted(f"keep a implies time_since(a) {comparison}", clock)[1]
+    assert offered == f"avoid (begins a) then within {time} (begins a)"
+    assert set(codes(TIMED.format(clock, offered))) <= {"TLT0418"}
+    if steps is not None:
+        counted = f"avoid (begins a) then within {steps} steps (begins a)"
+        one, other = (compile_text(TIMED.format(clock, clause))[0] for clause in (offered, counted))
+        assert compare(one, other).relation == "equivalent"
+
+
+def test_the_time_between_two_beginnings_is_the_one_of_the_comparison() -> None:
+    offered = quoted("keep a implies time_since(a) >= 0.5 s", "clock 10 Hz")[1]
+    between = "keep (begins a and previously once a) implies previously (time_since(begins a) >= 0.4 s)"
+    one, other = (compile_text(TIMED.format("clock 10 Hz", clause))[0] for clause in (offered, between))
+    assert compare(one, other).relation == "equivalent"
+
+
+@pytest.mark.parametrize("comparison", [">= 0.2 s", ">= 0.1 s", "> 0.1 s"])
+def test_no_second_beginning_comes_at_the_next_step(comparison: str) -> None:
+    assert "avoid (begins a)" not in " ".join(quoted(f"keep a implies time_since(a) {comparison}", "clock 10 Hz"))
+
+
+def test_the_time_of_a_stretch_that_ends_is_compared_at_its_last_step_or_from_its_first() -> None:
+    clause = "keep ends a implies time_holding(a) >= 2 s"
+    (finding,) = (found for found in findings_in(TIMED.format("clock 10 Hz", clause)))
+    assert finding.diagnostic.help == (
+        "`time_holding(a)` is 0 s at that step: write `previously (time_holding(a) >= 2 s)`, or "
+        "`keep begins a implies always for 2 s a`, which needs one step less; "
+        "to forbid `ends a` altogether, write `avoid ends a`"
+    )
+    _, previously, lasting, _, _ = quoted(clause, "clock 10 Hz")
+    one_less = "keep ends a implies previously (time_holding(a) >= 1.9 s)"
+    texts = (f"keep ends a implies {previously}", lasting, one_less)
+    longer, shorter, same = (compile_text(TIMED.format("clock 10 Hz", text))[0] for text in texts)
+    assert compare(shorter, same).relation == "equivalent"
+    assert compare(shorter, longer).relation == "stricter"
+    assert codes(TIMED.format("clock 10 Hz", lasting)) == []
+    assert "one step less" not in " ".join(
+        found.diagnostic.help or "" for found in findings_in(TIMED.format("clock varies", clause))
+    )

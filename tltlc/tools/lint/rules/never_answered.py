@@ -21,6 +21,7 @@ from tltlc.resolve.spec import Conjunct
 from tltlc.tools.lint.atom_relations import relations
 from tltlc.tools.lint.file_view import FileView, ScopedExpression, SpecView, operand_text, without_brackets
 from tltlc.tools.lint.rule import LintRule, RuleFinding
+from tltlc.tools.lint.step_times import steps_before, time_text
 from tltlc.tools.lint.stretches import ForbiddenStretch, every_step, forbidden_stretches, forbidding_clause
 from tltlc.tools.lint.timer_relations import timer_relations
 
@@ -65,7 +66,8 @@ def check(view: FileView) -> Iterator[RuleFinding]:
             found = [required for part in _implications(value) for required in _impossible(part, spec)]
             if found and _can_hold(clause, value, spec):
                 always = every_step(clause, value)
-                yield from (_finding(required, at_every_step=required.implication.tree in always) for required in found)
+                for required in found:
+                    yield _finding(required, spec.fspa.clock_s, at_every_step=required.implication.tree in always)
         for clause, value in spec.clauses("keep", "avoid", "require"):
             for stretch in forbidden_stretches(clause, value, spec):
                 yield _stretch_finding(stretch, in_block=spec.declaration.block)
@@ -149,11 +151,14 @@ def _can_hold(clause: Clause, value: ScopedExpression, spec: SpecView) -> bool:
     return not spec.decision((whole, *relations(spec, formula.atoms())), spec.spec)
 
 
-def _finding(required: _Required, *, at_every_step: bool) -> RuleFinding:
+def _finding(required: _Required, step_s: float | None, *, at_every_step: bool) -> RuleFinding:
     implication, condition, result = required.implication, required.condition, required.operand
     label = Label(implication.source, implication.tree.span, f"so this only forbids `{condition.text}`")
     text = f"not {operand_text(result)}" if required.negated else result.text
-    help_ = _later(required) if required.lasting is not None else _timer_help(required)
+    if required.lasting is not None:
+        help_: str | None = _later(required)
+    else:
+        help_ = _timer_help(required, step_s, at_every_step=at_every_step)
     if help_ is not None and at_every_step:
         help_ += f"; to forbid `{condition.text}` altogether, write `{forbidding_clause(condition)}`"
     help_ = help_ or f"if it comes later, write `{operand_text(condition)} implies eventually {operand_text(result)}`"
@@ -201,24 +206,46 @@ def _goal_text(part: ScopedExpression) -> str:
     return part.text if is_name else f"({part.text})"
 
 
-def _timer_help(required: _Required) -> str | None:
+def _timer_help(required: _Required, step_s: float | None, *, at_every_step: bool) -> str | None:
     """Return the help for a comparison of a timer with a time, else None."""
     result = required.operand
     tree = without_brackets(result.tree)
     if not isinstance(tree, BinaryExpr) or not isinstance(tree.left, CallExpr) or tree.left.name not in _TIMERS:
         return None
     event, may_repeat = result.with_tree(without_brackets(tree.left.arguments[0].value)), True
+    help_ = f"`{result.with_tree(tree.left).text}` is 0 s at that step"
+    condition = without_brackets(required.condition.tree)
+    if isinstance(condition, Unary) and condition.op == "ends":
+        help_ += f": write `previously ({result.text})`"
+        ended = required.condition.with_tree(without_brackets(condition.operand)).text
+        if at_every_step and tree.op == ">=" and isinstance(tree.right, NumberExpr) and event.text == ended:
+            text = operand_text(event)
+            help_ += f", or `keep begins {text} implies always for {result.with_tree(tree.right).text} {text}`"
+            help_ += ", which needs one step less" if step_s else ""
+        return help_
     if tree.left.name == "time_holding":
         may_repeat = isinstance(event.tree, Unary) and event.tree.op == "not"
         event = event.with_tree(event.tree.operand) if isinstance(event.tree, Unary) else event
-    help_ = f"`{result.with_tree(tree.left).text}` is 0 s at that step"
     if may_repeat and isinstance(tree.right, NumberExpr) and tree.op in (">", ">="):
-        begins, time = f"begins {operand_text(event)}", result.with_tree(tree.right).text
-        return f"{help_}; to forbid a second beginning so soon, write `avoid ({begins}) then within {time} ({begins})`"
-    condition = without_brackets(required.condition.tree)
-    if isinstance(condition, Unary) and condition.op == "ends":
-        return f"{help_}: write `previously ({result.text})`"
+        time = _forbidden_time(result.with_tree(tree.right), tree.right, step_s, inclusive=tree.op == ">")
+        if time is not None:
+            begins = f"(begins {operand_text(event)})"
+            return f"{help_}; to forbid a second beginning so soon, write `avoid {begins} then within {time} {begins}`"
     return f"{help_}: compare it at another step"
+
+
+def _forbidden_time(time: ScopedExpression, tree: NumberExpr, step_s: float | None, *, inclusive: bool) -> str | None:
+    """Return the longest time after which an event must not begin again if it may after the time ``tree``.
+
+    It may at this time itself, unless ``inclusive``. Return None if no event begins again so soon, because another
+    step must lie between.
+    """
+    shorter, steps = steps_before(tree, step_s), steps_before(tree, step_s, inclusive=inclusive)
+    if shorter is None or steps is None:
+        return time.text
+    if steps <= 1:
+        return None
+    return time.text if steps > shorter else time_text(steps, tree.unit, step_s)
 
 
 RULE = LintRule("TLT0432", "warning", check)
