@@ -6,8 +6,9 @@ from math import ceil, floor
 from typing import Final
 
 from tltlc.grammar.tree import NumberExpr
+from tltlc.resolve import units
 
-_SECONDS: Final = {"ms": 0.001, "s": 1.0, "min": 60.0, "h": 3600.0}
+_COUNTED: Final = (None, "step", "steps")
 _TOLERANCE_DIGITS: Final = 6
 
 
@@ -17,12 +18,12 @@ def steps_before(time: NumberExpr, step_s: float | None, *, inclusive: bool = Fa
     A time without a unit is a number of steps. Return None if the clock ``step_s``, in seconds, is not fixed, and if
     ``time`` is no time.
     """
-    if time.unit in (None, "step", "steps"):
-        steps = time.value
-    elif time.unit in _SECONDS and step_s:
-        steps = round(time.value * _SECONDS[time.unit] / step_s, _TOLERANCE_DIGITS)
-    else:
-        return None
+    steps = time.value
+    if time.unit not in _COUNTED:
+        in_si = units.in_si(time.value, time.unit)
+        if in_si is None or in_si[1] != units.TYPES["time"] or not step_s:
+            return None
+        steps = round(in_si[0] / step_s, _TOLERANCE_DIGITS)
     return floor(steps) if inclusive else ceil(steps) - 1
 
 
@@ -31,11 +32,11 @@ def time_text(steps: int, unit: str | None, step_s: float | None) -> str:
 
     A bound rounds a time up to whole steps. ``unit`` is that of a time of :func:`steps_before`.
     """
-    if unit not in _SECONDS or not step_s:
-        return f"{steps} step{'s' * (steps != 1)}"
-    step = step_s / _SECONDS[unit]
-    for digits in range(10):
-        number = floor(round(steps * step * 10**digits, _TOLERANCE_DIGITS)) / 10**digits
-        if number > round((steps - 1) * step, 9):
-            return f"{number:.{digits}f} {unit}"
+    in_si = units.in_si(1.0, unit) if unit not in _COUNTED else None
+    if in_si is not None and step_s:
+        step = step_s / in_si[0]
+        for digits in range(10):
+            number = floor(round(steps * step * 10**digits, _TOLERANCE_DIGITS)) / 10**digits
+            if number > round((steps - 1) * step, 9):
+                return f"{number:.{digits}f} {unit}"
     return f"{steps} step{'s' * (steps != 1)}"
