@@ -55,6 +55,11 @@ def chained_comparison(failure: ParseFailure) -> Diagnostic | None:
 
 _ARROWS: Final = {"==>": "implies", "-->": "implies", "<=>": "iff", "<==>": "iff", "<-->": "iff"}
 """Maps arrows of other languages to the words of the language."""
+NO_UNITS: Final = frozenset(
+    "a after also an and as at before between but by during each every for from if in is of on once only or per "
+    "provided since than that the then till to under unless until when whenever where while with within without".split()
+)
+"""Words of English that stand behind a number, as in `at most 3 per lap`, and are no units."""
 
 
 def long_arrow(failure: ParseFailure) -> Diagnostic | None:
@@ -127,6 +132,8 @@ def foreign_unit(failure: ParseFailure) -> Diagnostic | None:
         return _truth_of_comparison(failure)
     if token.text in VERBS and failure.allowed_terminals & COMPARISONS:
         return None  # `x + 1 is 3`
+    if token.text.lower() in NO_UNITS:
+        return None
     if token.text.isupper() and token.text.lower() in load().words:
         return None
     title = f"{quote_token(token)} is not a unit"
