@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import re
+
 import pytest
 
 from tltlc import compile_text
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.grammar.mistakes.sentences.validity import is_valid
 
 HEAD = """
 clock 10 Hz
@@ -22,6 +25,73 @@ def error_of(clause: str) -> Diagnostic:
     with pytest.raises(TltlError) as failure:
         compile_text(f"{HEAD}spec s {{\n    {clause}\n}}\n")
     return failure.value.diagnostics[0]
+
+
+def quoted(clause: str) -> list[str]:
+    """Return the clauses that the help for a clause names; the error must have no fix."""
+    error = error_of(clause)
+    assert error.fixes == ()
+    clauses = [text for text in re.findall("`([^`]*)`", error.help or "") if text.split(" ")[0] in ("keep", "require")]
+    assert all(is_valid((text,)) for text in clauses)
+    return clauses
+
+
+BRACKETINGS = {
+    "keep alarm implies within 1 s hidden until seen": [
+        "keep alarm implies (hidden until seen) and eventually within 1 s seen",
+        "keep alarm implies eventually within 1 s (hidden until seen)",
+        "keep alarm implies (eventually within 1 s hidden) until seen",
+    ],
+    "keep alarm implies hidden within 1 s until seen": [
+        "keep alarm implies eventually within 1 s (hidden until seen)",
+        "keep alarm implies (eventually within 1 s hidden) until seen",
+    ],
+    "keep alarm implies hidden within 1 s or seen": [
+        "keep alarm implies eventually within 1 s (hidden or seen)",
+        "keep alarm implies (eventually within 1 s hidden) or seen",
+    ],
+    "require within 1 s hidden and seen": [
+        "require eventually within 1 s (hidden and seen)",
+        "require (eventually within 1 s hidden) and seen",
+    ],
+    "require always (alarm implies in 10 steps hidden or seen)": [
+        "require always (alarm implies eventually within 10 steps (hidden or seen))",
+        "require always (alarm implies (eventually within 10 steps hidden) or seen)",
+    ],
+    "keep alarm implies for 1 s hidden until speed > 3": [
+        "keep alarm implies always for 1 s (hidden until speed > 3)",
+        "keep alarm implies (always for 1 s hidden) until speed > 3",
+    ],
+}
+
+
+@pytest.mark.parametrize(("clause", "readings"), BRACKETINGS.items(), ids=BRACKETINGS)
+def test_a_time_beside_an_operator_gets_both_bracketings(clause: str, readings: list[str]) -> None:
+    assert quoted(clause) == readings
+
+
+@pytest.mark.parametrize(
+    "clause",
+    [
+        "keep times(hit) within 3 s <= 2",
+        "keep times(hit) in the last 3 s <= 2",
+        "keep within 3 s times(hit) <= 2",
+        "keep times(hit) <= 2 per 3 s",
+        "keep alarm implies times(hit) in any 3 s < 5",
+        "keep times(hit) within 3 s",
+    ],
+)
+def test_no_clause_counts_within_a_time(clause: str) -> None:
+    assert error_of(clause).help == (
+        "`times(hit)` counts from the first step on, and no clause can say how often something happens within 3 s: "
+        "let the game count, and supply the number"
+    )
+
+
+def test_a_count_of_two_within_a_time_has_a_clause() -> None:
+    assert error_of("keep times(hit) within 3 s <= 1").help == (
+        "write `avoid (begins hit) then within 3 s (begins hit)`"
+    )
 
 
 @pytest.mark.parametrize("word", ["in each", "per", "between", "during", "since the", "for", "within", "every", "each"])

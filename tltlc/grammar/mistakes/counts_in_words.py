@@ -11,6 +11,7 @@ from tltlc.grammar.lexer import END, Token
 from tltlc.grammar.mistakes.declared_names import declared_names
 from tltlc.grammar.mistakes.english_rewrite import FIXED_CLOCK, clause_keyword
 from tltlc.grammar.mistakes.english_times import time_at
+from tltlc.grammar.mistakes.parse_failure import COMPARISONS as SIGNS
 from tltlc.grammar.mistakes.parse_failure import INFIX, ParseFailure, quote_token
 from tltlc.grammar.mistakes.repeats import begun_again, quantified_body
 from tltlc.grammar.mistakes.rephrasing import (
@@ -31,6 +32,12 @@ COMPARISONS: Final[Mapping[tuple[str, ...], str]] = {
 }
 """Maps English words before a number to the sign of the comparison."""
 _COUNTED: Final[Mapping[tuple[str, ...], str]] = {**COMPARISONS, ("exactly",): "=="}
+_BEFORE_TIME: Final = tuple(
+    (word, *rest)
+    for word in ("within", "in", "during", "for", "per", "every", "each")
+    for rest in (("the", "last"), ("the", "past"), ("any",), ("every",), ("each",), ("a",), ())
+)
+"""Words before a time in which something is counted."""
 _NUMBERS: Final = {"once": "1", "twice": "2", "thrice": "3"}
 _CLAUSES: Final = {
     **{(keyword, "<="): "keep times({p}) <= {n}" for keyword in ("keep", "reach", "require")},
@@ -45,7 +52,10 @@ _CLAUSES: Final = {
 `keep … at least` would have to hold at the first step, too, and `reach … at most` always holds there:
 for these, the other clause is meant.
 """
-COUNT_ELSEWHERE: Final = "let the game count within a time, and supply the number"
+COUNT_ELSEWHERE: Final = (
+    "counts from the first step on, and no clause can say how often something happens within {time}: let the game "
+    "count, and supply the number"
+)
 _TWICE: Final = ((">=", "2"), (">", "1"))
 _AT_MOST_ONCE: Final = (("<=", "1"), ("<", "2"))
 
@@ -81,8 +91,9 @@ def count_in_words(failure: ParseFailure) -> Diagnostic | None:
             if diagnostic is not None:
                 return diagnostic
     operand = operand_start(tokens, at)
-    if operand is None:
-        return _timed_comparison(failure)
+    timed = _timed_times(failure) or (_timed_comparison(failure) if operand is None else None)
+    if operand is None or timed is not None:
+        return timed
     return _count_after(failure, keyword if operand == first else "", operand, at)
 
 
@@ -167,7 +178,8 @@ def _role(failure: ParseFailure, start: int) -> tuple[str, str]:
 def _timed_comparison(failure: ParseFailure) -> Diagnostic | None:
     """Return an error for a time after a comparison of `times`, as in ``times(p) <= 2 within 5 s``, else None."""
     tokens, at = failure.tokens, failure.stop.index
-    time = time_at(tokens, at + 1) if tokens[at].text in ("within", "in") else None
+    phrase = phrase_at(tokens, at, _BEFORE_TIME)
+    time = time_at(tokens, at + len(phrase)) if phrase else None
     begin = operand_start(tokens, at - 2) if time is not None and at > 2 else None
     if time is None or begin is None or tokens[begin].text != "times" or tokens[at - 1].type != "NUMBER":
         return None
@@ -180,12 +192,37 @@ def _timed_comparison(failure: ParseFailure) -> Diagnostic | None:
     return failure.error("TLT0101", title, help_, span=tokens[at].span)
 
 
+def _timed_times(failure: ParseFailure) -> Diagnostic | None:
+    """Return an error for a time beside `times`, as in ``times(p) within 5 s <= 2`` and ``within 5 s times(p) <= 2``.
+
+    Return None if there is no such time.
+    """
+    tokens, at = failure.tokens, failure.stop.index - (failure.token.type == "NUMBER")
+    phrase = phrase_at(tokens, at, _BEFORE_TIME)
+    time = time_at(tokens, at + len(phrase)) if phrase else None
+    if time is None:
+        return None
+    begin, sign = operand_start(tokens, at), time[1]
+    if tokens[sign].text == "times":
+        begin, sign = sign, operand_end(tokens, sign) or sign
+    end = None if begin is None or tokens[begin].text != "times" else operand_end(tokens, begin)
+    if begin is None or end is None or end < begin + 3:
+        return None
+    title, help_ = f"{quote_token(tokens[at])} is not an operator", FIXED_CLOCK
+    if not failure.lacks_fixed_clock(time[0].text):
+        operator, number = (token.text for token in tokens[sign : sign + 2]) if tokens[sign].type in SIGNS else ("", "")
+        count = _Count(operator, number, time[0].text, begin, at)
+        keyword, head = _role(failure, min(begin, at)) if tokens[sign + 2 :] == tokens[-1:] else ("", "")
+        help_ = _within_time(keyword, text_of(failure, begin + 2, end - 1), count.sign, count, head)
+    return failure.error("TLT0101", title, help_, span=tokens[at].span)
+
+
 def _within_time(keyword: str, operand: str, sign: str, count: _Count, head: str) -> str:
     """Return the help for a count within a time, such as `never seen twice within 10 s`."""
     clause = _again_within(keyword, operand, sign, count, head)
     if clause:
         return f"write `{clause}`"
-    return f"`times({operand})` counts from the first step on: {COUNT_ELSEWHERE}"
+    return f"`times({operand})` {COUNT_ELSEWHERE.format(time=count.time)}"
 
 
 def _again_within(keyword: str, operand: str, sign: str, count: _Count, head: str) -> str:

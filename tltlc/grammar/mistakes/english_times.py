@@ -9,6 +9,7 @@ from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.grammar.keywords import OPERATORS, UNITS_ELSEWHERE
 from tltlc.grammar.lexer import Token
+from tltlc.grammar.mistakes.bracketings import time_before_joint, time_before_operator
 from tltlc.grammar.mistakes.declared_names import declared_names
 from tltlc.grammar.mistakes.english_forms import AFTER_TIME, FOR_TIME, HOLDING, IN_TIME, PAST_TIME, Forms
 from tltlc.grammar.mistakes.english_rewrite import (
@@ -60,14 +61,15 @@ def time_error(failure: ParseFailure, forms: Forms) -> Diagnostic:
     written = time if is_clear_unit else None
     if forms is IN_TIME and kind != "reach" and has_token(failure, begin, at, {"THEN"}):
         return _sequence_error(failure, (begin, end), _shown_time(failure, time, written))
-    if forms is IN_TIME and is_clear_unit and end == stop and len(goals) == 1:
-        diagnostic = shared_time_error(failure, at, (begin, at), time)
-        if diagnostic is not None:
-            return diagnostic
-    if len(goals) == 2 and forms is IN_TIME and kind == "reach" and is_clear_unit and end == stop:
-        diagnostic = _arrival_error(failure, (goals[0], goals[1], at), time)
-        if diagnostic is not None:
-            return diagnostic
+    if is_clear_unit and (error := time_before_operator(failure, at, end, time, forms)):
+        return error
+    is_last = forms is IN_TIME and is_clear_unit and end == stop
+    if is_last and len(goals) == 1 and (error := shared_time_error(failure, at, (begin, at), time)):
+        return error
+    if is_last and len(goals) == 2 and kind == "reach":
+        error = _arrival_error(failure, (goals[0], goals[1], at), time)
+        if error is not None:
+            return error
     if len(goals) > 1:
         before = operand_text(failure, goals[-2], begin - 1)
         is_clear = not has_token(failure, goals[-2], begin - 1, UNCLEAR | TEMPORAL)
@@ -150,6 +152,8 @@ def prefix_time_error(failure: ParseFailure, at: int, forms: Forms) -> Diagnosti
         )
         if diagnostic is not None:
             return diagnostic
+    if is_clear_unit and (error := time_before_joint(failure, at, second, time, forms)):
+        return error
     if at == first:
         form = forms.get(kind, forms[""])
         if form == FOR_TIME["reach"] and time.is_real:

@@ -156,9 +156,10 @@ def _small_goal(words: Words) -> str | None:
 def _counted_in_time(words: Words) -> str | None:
     """Return the help for `times(a) <= 2 within 5 s`, whose count begins at the first step."""
     found = words.find(WITHIN)
-    if found is None or not words.time(found[0] + len(found[1])) or words[0].text != "times":
+    time = None if found is None else words.time(found[0] + len(found[1]))
+    if not time or words[0].text != "times":
         return None
-    return f"`{words[: call_end(words, 0)].text}` counts from the first step on: {COUNT_ELSEWHERE}"
+    return f"`{words[: call_end(words, 0)].text}` {COUNT_ELSEWHERE.format(time=time[0].text)}"
 
 
 def _unknown_value(words: Words) -> str | None:
