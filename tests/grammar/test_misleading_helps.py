@@ -36,6 +36,10 @@ def quoted(clause: str) -> list[str]:
     return clauses
 
 
+def marked(error: Diagnostic) -> str:
+    return error.labels[0].source.slice(error.labels[0].span)
+
+
 BRACKETINGS = {
     "keep alarm implies within 1 s hidden until seen": [
         "keep alarm implies (hidden until seen) and eventually within 1 s seen",
@@ -92,6 +96,49 @@ def test_a_count_of_two_within_a_time_has_a_clause() -> None:
     assert error_of("keep times(hit) within 3 s <= 1").help == (
         "write `avoid (begins hit) then within 3 s (begins hit)`"
     )
+
+
+@pytest.mark.parametrize(
+    ("clause", "word"),
+    [
+        ("keep times(hit) since begins mode is wave <= 1", "<="),
+        ("keep mode is not wave < 2", "<"),
+        ("keep alarm implies eventually within 5 s mode is dive unless not hidden", "unless"),
+        ("keep mode is dive glows", "dive glows"),
+    ],
+)
+def test_an_error_behind_a_test_of_an_enum_is_at_what_cannot_stand_there(clause: str, word: str) -> None:
+    error = error_of(clause)
+    assert marked(error) == word
+    assert "`is`" not in error.title
+
+
+def test_a_test_that_is_compared_may_be_counted_or_timed() -> None:
+    assert "`times(mode is wave) <= 1`" in (error_of("keep mode is wave <= 1").help or "")
+    assert "`time_holding(mode is wave) <= 2 s`" in (error_of("keep mode is wave <= 2 s").help or "")
+
+
+CONDITIONS = {
+    "keep alarm implies eventually within 5 s mode is dive unless not hidden": [
+        "keep alarm and hidden implies eventually within 5 s mode is dive",
+        "keep alarm implies eventually within 5 s (mode is dive or not hidden)",
+    ],
+    "keep alarm implies next hidden when seen": [
+        "keep alarm and seen implies next hidden",
+        "keep alarm implies next (hidden and seen)",
+    ],
+    "require always (alarm implies eventually hidden unless speed > 3)": [
+        "require always (alarm and not (speed > 3) implies eventually hidden)",
+        "require always (alarm implies eventually (hidden or speed > 3))",
+    ],
+    "keep alarm implies hidden unless seen": ["keep alarm implies hidden or seen"],
+    "keep alarm implies hidden if seen": ["keep alarm and seen implies hidden"],
+}
+
+
+@pytest.mark.parametrize(("clause", "readings"), CONDITIONS.items(), ids=CONDITIONS)
+def test_a_condition_behind_a_rule_is_about_the_event_or_its_answer(clause: str, readings: list[str]) -> None:
+    assert quoted(clause) == readings
 
 
 @pytest.mark.parametrize("word", ["in each", "per", "between", "during", "since the", "for", "within", "every", "each"])

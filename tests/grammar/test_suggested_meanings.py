@@ -357,4 +357,4 @@ def test_an_error_after_a_value_of_an_enum_does_not_blame_is(value: str) -> None
     _, error = error_of(f"avoid mode is {value} for 2 s")
     assert error.fixes == ()
     assert error.title == "`for` is not an operator"
-    assert error.help == f"put `mode is {value}` in brackets"
+    assert f"`avoid time_holding(mode is {value}) >= 2 s` if it must never hold that long" in (error.help or "")

@@ -31,6 +31,7 @@ from tltlc.grammar.mistakes.english_times import prefix_time_error, time_error
 from tltlc.grammar.mistakes.one_reading import TEMPORAL, UNCLEAR, has_token, is_clear_here, is_clear_word
 from tltlc.grammar.mistakes.parse_failure import INFIX, ParseFailure, outer_indices, quote_token
 from tltlc.grammar.mistakes.rephrasing import formula_start, formula_stop, operand_text, span_of, suggest_rewrite
+from tltlc.grammar.mistakes.rule_conditions import condition_behind_rule
 
 _FROM_THEN_ON: Final = {
     "keep": "write `keep b implies a` to require `a` at every step where `b` holds, or `keep b implies always a` to "
@@ -69,6 +70,8 @@ def plain_english(failure: ParseFailure) -> Diagnostic | None:
             return failure.error("TLT0101", f"{quote_token(word)} is not an operator", CASES, span=word.span)
         if word.text == "without" and clause_keyword(failure) in ("reach", "keep"):
             return _without_error(failure)
+        if at == failure.stop.index and not is_timed and (diagnostic := condition_behind_rule(failure)):
+            return diagnostic
         report = time_error if is_timed else _infix_word_error
         return (
             _prefix_word_error(failure, at, forms, timed=is_timed)

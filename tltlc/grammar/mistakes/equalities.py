@@ -245,10 +245,6 @@ def verb_is(failure: ParseFailure) -> Diagnostic | None:
         second += 1
     start, stop = value_end(tokens, at, -1), value_end(tokens, second - 1, 1)
     title = f"{quote_token(failure.token)} is not an operator"
-    if second + 1 < stop and tokens[second].text in _enum_values(failure, (start, at)):
-        unfit, choice = tokens[second + 1], text_of(failure, start, second + 1)
-        title = f"{quote_token(unfit)} is not an operator"
-        return failure.error("TLT0101", title, f"put `{choice}` in brackets", span=unfit.span)
     diagnostic = (
         _typed_equality(failure, (start, at), (second, stop), is_unequal, title, "TLT0101")
         or _equal_numbers(failure, (start, at), (second, stop), is_unequal, title)

@@ -18,6 +18,7 @@ from tltlc.grammar.keywords import CASES, CLAUSES, DECLARATIONS, closest_word
 from tltlc.grammar.lexer import Token
 from tltlc.grammar.mistakes.answers_in_rules import answer_in_rule
 from tltlc.grammar.mistakes.clauses import CLAUSE_RULES, synonym_inside_formula
+from tltlc.grammar.mistakes.compared_tests import compared_test
 from tltlc.grammar.mistakes.comparison_words import comparison_in_words
 from tltlc.grammar.mistakes.counts_in_words import never_counted
 from tltlc.grammar.mistakes.declared_names import declared_names
@@ -90,7 +91,7 @@ def _diagnostic(
     *,
     reads_sentences: bool = True,
 ) -> Diagnostic:
-    at = misread_index(tokens, error.index, start)
+    at = misread_index(source, tokens, error.index, start)
     failure = ParseFailure(source, tokens, error if at == error.index else stop_at(tokens, at, start), start)
     if failure.allowed_terminals == {"OF"}:
         # Only `within 5 s of a, b` begins with a time. Explain anything else as a time without an operator.
@@ -371,6 +372,7 @@ _RULES: Final = (
     plain_english,
     comparison_in_words,
     filler_word,
+    compared_test,
     _foreign_otherwise,
     *HABITS,
     *PUNCTUATION,

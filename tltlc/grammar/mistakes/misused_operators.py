@@ -16,7 +16,9 @@ from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.grammar import lalr
 from tltlc.grammar.keywords import CLAUSES, DECLARATIONS, TEST_ITEMS
 from tltlc.grammar.lexer import END, Token, tokenize
+from tltlc.grammar.mistakes.declared_names import declared_names
 from tltlc.grammar.mistakes.fragments import block_kind, declarations, lines
+from tltlc.grammar.mistakes.rephrasing import operand_start
 from tltlc.grammar.tables import load
 
 EQUALITIES: Final = ("EQUALS", "UNEQUAL")
@@ -40,11 +42,12 @@ def stop_at(tokens: Sequence[Token], index: int, start: str) -> lalr.UnexpectedT
     return lalr.UnexpectedTokenError(index, lalr.stack_after(load(), start, tokens[:index]))
 
 
-def misread_index(tokens: Sequence[Token], index: int, start: str) -> int:
+def misread_index(source: SourceFile, tokens: Sequence[Token], index: int, start: str) -> int:
     """Return where a text with a syntax error at ``index`` is wrong already.
 
     This is the index of an ``==`` directly before the error, or of an ``is`` before it with at most
-    ``not`` and a name between them, as in ``health is at least 3``; otherwise ``index``.
+    ``not`` and a name between them, as in ``health is at least 3``; otherwise ``index``. An ``is`` between an
+    enum and one of its values is right.
     """
     if index and tokens[index - 1].type in EQUALITIES:
         return index - 1
@@ -52,6 +55,10 @@ def misread_index(tokens: Sequence[Token], index: int, start: str) -> int:
     at -= at > 0 and tokens[at].type == "NAME" and tokens[at].text != "is"
     at -= at > 0 and tokens[at].type == "NOT"
     if at <= 0 or tokens[at].text != "is":
+        return index
+    first, value = operand_start(tokens, at), tokens[index - 1]
+    known = None if first is None else declared_names(source).names.get(tokens[first].text)
+    if known is not None and value.text in known.values:
         return index
     return at if "IS" in lalr.allowed_terminals(load(), stop_at(tokens, at, start).states) else index
 
