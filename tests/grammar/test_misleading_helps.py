@@ -99,6 +99,32 @@ def test_a_count_of_two_within_a_time_has_a_clause() -> None:
 
 
 @pytest.mark.parametrize(
+    ("clause", "event"),
+    [
+        ("keep times(hit) since alarm <= 3", "alarm"),
+        ("keep times(hit) since begins alarm <= 3", "begins alarm"),
+        ("keep (times(hit) since alarm) <= 3", "alarm"),
+        ("keep times(hit) since alarm", "alarm"),
+        ("keep hit since alarm <= 3", "alarm"),
+        ("keep times(hit) since begins mode is wave <= 1", "begins mode is wave"),
+        ("keep times(hit) since speed > 3 <= 2", "speed > 3"),
+    ],
+)
+def test_the_game_counts_since_an_event(clause: str, event: str) -> None:
+    help_ = error_of(clause).help or ""
+    assert help_.endswith(
+        f"`times(hit)` counts from the first step on: let the game count since `{event}`, and supply the number as a "
+        "signal"
+    )
+
+
+def test_a_bool_that_is_compared_may_be_counted() -> None:
+    error = error_of("keep hit <= 3")
+    assert error.code == "TLT0310"
+    assert (error.help or "").endswith("as in `times(hit) <= 3`")
+
+
+@pytest.mark.parametrize(
     ("clause", "word"),
     [
         ("keep times(hit) since begins mode is wave <= 1", "<="),

@@ -102,7 +102,9 @@ def _check_truth(left: Quantity, op: str, right: Quantity, negated: bool, expr: 
             message, advice = "both sides are constant", f"compare a signal, or write `{constant}`"
         elif _is_bool(expr.left, env) or _is_bool(expr.right, env):
             message = f"`{x.text}` is true or false"
-            advice = f"write `{x.text}` or `not {x.text}`, or count how often it has begun, as in `times({x.text}) > 3`"
+            sign = source.slice(Span(expr.left.span.end, expr.span.end)) if _is_bool(expr.left, env) else "> 3"
+            count = f"times({x.text}) {' '.join(sign.split())}"
+            advice = f"write `{x.text}` or `not {x.text}`, or count how often it has begun, as in `{count}`"
             fix = _count_fix(expr, env)
         elif _is_percentage(x, c, op, expr, env):
             text, end = f"{' '.join(source.slice(expr.span).split())} %", expr.span.end

@@ -36,6 +36,7 @@ from tltlc.resolve.arguments import match
 from tltlc.resolve.bounds import bounded_operator, with_bound
 from tltlc.resolve.comparisons import comparison
 from tltlc.resolve.context import LARGEST_EXPANSION, MOST_EXPANSIONS, expansion_error, too_many_expansions_error
+from tltlc.resolve.counts_since import check_no_count, check_not_compared
 from tltlc.resolve.declared_values import signal
 from tltlc.resolve.enums import is_value
 from tltlc.resolve.equality import EQUALITIES, equality
@@ -124,7 +125,9 @@ def _formula(expr: Expr, env: Env) -> FormulaGenerator:
         operand = yield _formula(expr.operand, env)
         return memory.past(expr, operand, env)
     if isinstance(expr, BinaryExpr) and expr.op == "since":
+        check_no_count(expr, env)
         left = yield _formula(expr.left, env)
+        check_not_compared(expr, env)
         right = yield _formula(expr.right, env)
         return memory.since(expr, left, right, env)
     if isinstance(expr, Quantified):

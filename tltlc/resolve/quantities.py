@@ -14,6 +14,7 @@ from tltlc.grammar.tree import CallExpr, Expr, GroupExpr, NameExpr, NumberExpr
 from tltlc.io.limits import ARITHMETIC
 from tltlc.resolve import functions, units
 from tltlc.resolve.arguments import match
+from tltlc.resolve.counts_since import count_since_help, is_count_since
 from tltlc.resolve.declared_values import param, signal, signal_value
 from tltlc.resolve.dimensions import mismatch, same_dimension
 from tltlc.resolve.enums import enum_as_number_error, enum_distance
@@ -313,6 +314,8 @@ def _not_a_number_error(expr: Expr, env: Env) -> ResolutionError:
     advice = "arithmetic takes numbers: signals, params and predicates"
     if isinstance(expr, tree.IsExpr) or (isinstance(expr, tree.BinaryExpr) and expr.op in _COMPARISONS):
         advice = "a comparison is a formula: name one with `let rich = coins > 30`, and join two with `and`"
+    elif is_count_since(expr, env):
+        advice = count_since_help(expr, env)
     elif kind_of(expr, env) == "entity":
         advice = entity_help(env.scope.source.slice(expr.span), env, number=True)
     title = f"expected a number, found {kind_in_words(expr, env)}"

@@ -1,0 +1,64 @@
+"""Refuse a count since an event, as in ``times(p) since q <= 3``: counts begin at the first step."""
+
+from __future__ import annotations
+
+from typing import Final, TypeGuard
+
+from tltlc.core.source import Span
+from tltlc.grammar.mistakes.compared_tests import COUNT_SINCE
+from tltlc.grammar.tree import BinaryExpr, CallExpr, Expr, GroupExpr, NumberExpr, Unary
+from tltlc.resolve.kinds import kind_of
+from tltlc.resolve.problem import problem
+from tltlc.resolve.values import Env
+
+_ORDERS: Final = ("<", "<=", ">", ">=", "==", "!=")
+
+
+def check_no_count(expr: BinaryExpr, env: Env) -> None:
+    """Raise ResolutionError (TLT0301) if p is a count in ``p since q``, as in ``times(p) since q <= 3``."""
+    if _is_count(expr.left, env):
+        advice = count_since_help(expr, env)
+        raise problem("TLT0301", "expected a formula, found a number", env.scope.source, expr.left.span, advice=advice)
+
+
+def check_not_compared(expr: BinaryExpr, env: Env) -> None:
+    """Raise ResolutionError (TLT0310) if q is a bool in ``p since q <= 3``, so that p is to be counted since q."""
+    compared = _comparison(expr.right)
+    if compared and isinstance(compared.right, NumberExpr) and kind_of(compared.left, env) == "formula":
+        event = _event(expr, env)
+        title = f"`{compared.op}` compares numbers, and `{event}` is true or false"
+        advice = f"write `{event}` alone; {count_since_help(expr, env)}"
+        raise problem("TLT0310", title, env.scope.source, compared.op_span, advice=advice)
+
+
+def count_since_help(expr: BinaryExpr, env: Env) -> str:
+    """Return the help for ``times(p) since q``, or for ``p since q`` where p is to be counted."""
+    counted = " ".join(env.scope.source.slice(expr.left.span).split())
+    count = counted if _is_count(expr.left, env) else f"times({counted})"
+    return COUNT_SINCE.format(count=count, event=_event(expr, env))
+
+
+def is_count_since(expr: Expr, env: Env) -> TypeGuard[BinaryExpr]:
+    """Whether an expression is ``times(p) since q``."""
+    return isinstance(expr, BinaryExpr) and expr.op == "since" and _is_count(expr.left, env)
+
+
+def _event(expr: BinaryExpr, env: Env) -> str:
+    """Return the text of q in ``p since q`` and ``p since q <= 3``."""
+    compared = _comparison(expr.right)
+    span = Span(expr.right.span.start, compared.left.span.end if compared else expr.right.span.end)
+    return " ".join(env.scope.source.slice(span).split())
+
+
+def _is_count(expr: Expr, env: Env) -> bool:
+    """Whether an expression is a use of ``times``, perhaps in brackets."""
+    while isinstance(expr, GroupExpr):
+        expr = expr.inner
+    return isinstance(expr, CallExpr) and expr.name == "times" and expr.name not in env.scope.names
+
+
+def _comparison(expr: Expr) -> BinaryExpr | None:
+    """Return the comparison that an expression is, perhaps after `begins` or `ends`; else None."""
+    while isinstance(expr, Unary) and expr.op in ("begins", "ends"):
+        expr = expr.operand
+    return expr if isinstance(expr, BinaryExpr) and expr.op in _ORDERS else None
