@@ -176,3 +176,7 @@ def test_a_word_of_english_behind_a_number_is_no_unit(word: str) -> None:
 
 def test_another_word_behind_a_number_is_no_unit() -> None:
     assert error_of("keep speed <= 3 feet").title == "`feet` is not a unit"
+
+
+def test_counting_stops_at_a_maximum() -> None:
+    assert (error_of("keep times(hit) >= times(seen)").help or "").endswith(": counting stops at the maximum")

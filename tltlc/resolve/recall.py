@@ -72,13 +72,14 @@ def check_closed(value: Quantity, expr: Expr, env: Env) -> Quantity:
     assert value.recall is not None, "an open quantity"
     example = "10" if value.recall.is_count else "60 s"
     fixed = f"{value.text[:-1]}, {example})"
+    stops = f"{'counting' if value.recall.is_count else 'the time'} stops at the maximum"
     raise problem(
         "TLT0321",
         f"`{value.text}` needs a maximum here",
         env.scope.source,
         expr.span,
         "only a comparison with a number finds one by itself",
-        advice=f"write the greatest value that matters, e.g. `{fixed}`",
+        advice=f"write the greatest value that matters, e.g. `{fixed}`: {stops}",
     )
 
 
