@@ -178,5 +178,24 @@ def test_another_word_behind_a_number_is_no_unit() -> None:
     assert error_of("keep speed <= 3 feet").title == "`feet` is not a unit"
 
 
+@pytest.mark.parametrize(
+    ("clause", "word"),
+    [
+        ("keep hidden glows", "glows"),
+        ("when alarm, hidden must glow", "must"),
+        ("keep if hidden alarm else seen", "else"),
+        ("keep times(hit) <= 2 between landings", "between"),
+    ],
+)
+def test_a_word_that_the_language_does_not_know_is_named(clause: str, word: str) -> None:
+    help_ = error_of(clause).help or ""
+    assert help_.startswith(f"the language does not know the word `{word}`")
+    assert "docs/guides/phrases.md" in help_
+
+
+def test_a_help_in_the_words_of_the_file_stays() -> None:
+    assert "`keep alarm implies hidden`" in (error_of("keep alarm hidden").help or "")
+
+
 def test_counting_stops_at_a_maximum() -> None:
     assert (error_of("keep times(hit) >= times(seen)").help or "").endswith(": counting stops at the maximum")

@@ -52,6 +52,7 @@ from tltlc.grammar.mistakes.rules_in_words import rule_in_words
 from tltlc.grammar.mistakes.sentences.help import sentence_help
 from tltlc.grammar.mistakes.sentences.reading import ReadAgain
 from tltlc.grammar.mistakes.unknown_signs import unknown_sign
+from tltlc.grammar.mistakes.unknown_words import with_unknown_word
 from tltlc.grammar.tables import load
 
 _NEXTS: Final = {"NEXT", "WEAK_NEXT"}
@@ -96,16 +97,15 @@ def _diagnostic(
     if failure.allowed_terminals == {"OF"}:
         # Only `within 5 s of a, b` begins with a time. Explain anything else as a time without an operator.
         failure = ParseFailure(source, tokens, stop_at(tokens, failure.stop.index - 2, start), start)
-    for rule in _RULES:
-        diagnostic = rule(failure)
-        if diagnostic:
-            is_explained = rule not in _OPEN_RULES
-            break
-    else:
-        diagnostic, is_explained = failure.error("TLT0101", failure.expectation(), failure.form()), False
-    return sentence_help(
+    diagnostic, rule = next(
+        ((found, rule) for rule in _RULES if (found := rule(failure))),
+        (failure.error("TLT0101", failure.expectation(), failure.form()), None),
+    )
+    is_explained = rule is not None and rule not in _OPEN_RULES
+    helped = sentence_help(
         failure, diagnostic, is_explained=is_explained, read_again=read_again, reads_sentences=reads_sentences
     )
+    return with_unknown_word(failure, diagnostic, helped, rule)
 
 
 def _at_fix(diagnostic: Diagnostic) -> Diagnostic:
