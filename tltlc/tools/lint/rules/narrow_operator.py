@@ -48,7 +48,7 @@ def _findings(expression: Expr, source: SourceFile) -> Iterator[RuleFinding]:
                 following = [*takewhile(_is_about_one_step, operands[place + 1 :])]
                 if following:
                     is_past = operand.op in _PAST_WORDS
-                    yield _finding(operand, following, source, one_reading=is_past and _has_future(part))
+                    yield _finding(operand, part.op, following, source, one_reading=is_past and _has_future(part))
 
 
 def _is_narrow(operand: Unary, op: str, source: SourceFile) -> bool:
@@ -77,8 +77,10 @@ def _has_future(tree: Expr) -> bool:
     return any(isinstance(part, (Unary, BinaryExpr)) and part.op in _FUTURE for part in walk.parts(tree))
 
 
-def _finding(operator: Unary, following: Sequence[Expr], source: SourceFile, *, one_reading: bool) -> RuleFinding:
-    """Return the finding for an operator that ends before an infix operator and its operands ``following``.
+def _finding(
+    operator: Unary, op: str, following: Sequence[Expr], source: SourceFile, *, one_reading: bool
+) -> RuleFinding:
+    """Return the finding for an operator that ends before an infix operator ``op`` and its operands ``following``.
 
     If ``one_reading``, the operator cannot apply to all of them.
     """
@@ -92,10 +94,18 @@ def _finding(operator: Unary, following: Sequence[Expr], source: SourceFile, *, 
     narrow = f"({text(operator.span.start, operator.span.end)}) {text(operator.span.end, end)}"
     label = Label(source, Span(operator.span.start, end), f"read as `{narrow}`")
     together = "both" if len(following) == 1 else "all of them"
-    help_ = f"write `{wide}` if it applies to {together}, `{narrow}` if it does not"
+    readings = f"`{wide}` if it applies to {together}, `{narrow}` if it does not"
+    help_ = f"write {readings}"
+    if word == "once" and op == "since" and len(following) == 1:
+        event, start = _in_brackets(first), _in_brackets(text(following[0].span.start, end))
+        help_ = f"write `(not {start}) since {event}` if it must have come since the last `{start}`, {readings}"
     if one_reading:
         help_ = f"write `{narrow}` if you mean this; `{word}` cannot apply to what comes later"
     return RuleFinding(f"`{word}` applies to `{first}` alone", (label,), help_)
+
+
+def _in_brackets(text: str) -> str:
+    return text if text.isidentifier() else f"({text})"
 
 
 RULE = LintRule("TLT0446", "warning", check)
