@@ -17,7 +17,7 @@ from tltlc.grammar.mistakes.declared_names import declared_names
 from tltlc.grammar.mistakes.sentences.calls import with_own_calls
 from tltlc.grammar.mistakes.sentences.validity import is_valid
 from tltlc.grammar.mistakes.sentences.vocabulary import ENGLISH
-from tltlc.grammar.mistakes.sentences.words import words_of
+from tltlc.grammar.mistakes.sentences.words import Words, words_of
 from tltlc.monitor import Monitor
 
 HEAD = """\
@@ -399,11 +399,15 @@ UNSAYABLE = {
 }
 
 
-def read(typed: str) -> Sentence:
+def words_of_sentence(typed: str) -> Words:
     source = SourceFile("a.tltl", f"{HEAD}spec s {{\n{typed}\n}}\n")
     start = len(HEAD) + len("spec s {\n")
     tokens = [token for token in tokenize(source.text).tokens if start <= token.start < token.end <= start + len(typed)]
-    return sentence(with_own_calls(words_of(source, declared_names(source), tokens, ENGLISH)))
+    return with_own_calls(words_of(source, declared_names(source), tokens, ENGLISH))
+
+
+def read(typed: str) -> Sentence:
+    return sentence(words_of_sentence(typed))
 
 
 @pytest.mark.parametrize("typed", ONE_READING)
@@ -544,7 +548,7 @@ def test_an_error_whose_own_fix_is_enough_keeps_it() -> None:
 
 
 def test_no_sentence_is_read_without_lark(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("tltlc.grammar.english.readings.find_spec", lambda name: None)
+    monkeypatch.setattr("tltlc.grammar.english.readings.sentence_parser", lambda: None)
     assert read("when fire then spray") == Sentence()
 
 

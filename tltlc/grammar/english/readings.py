@@ -2,27 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from functools import lru_cache
-from importlib.util import find_spec
+from collections.abc import Sequence
 from itertools import islice, product
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 from tltlc.core.record import record
 from tltlc.grammar.english.events import Crossing
 from tltlc.grammar.english.forms import Form, Part, forms
 from tltlc.grammar.english.orders import Orders
 from tltlc.grammar.english.periods import Periods
-from tltlc.grammar.english.phrases import grammar_text
 from tltlc.grammar.english.rules import Reading, Rules
+from tltlc.grammar.english.sentence_parser import SentenceParser, sentence_parser
 from tltlc.grammar.english.terminals import UNKNOWN, Term, known_terms, terms
 from tltlc.grammar.english.transitions import Transitions
 from tltlc.grammar.mistakes.sentences.states import State
 from tltlc.grammar.mistakes.sentences.validity import is_valid
 from tltlc.grammar.mistakes.sentences.words import Words
-
-if TYPE_CHECKING:
-    from lark import Lark
 
 _MOST_READINGS: Final = 3
 """The most readings that a help names."""
@@ -58,8 +53,6 @@ def sentence(words: Words) -> Sentence:
     Several lines may be one sentence, or one for each line. Without lark, which the playground does not
     load, no sentence is read.
     """
-    if find_spec("lark") is None:
-        return Sentence()
     whole = _sentence(words)
     if not whole.readings and not whole.limit and words.word(0) == "keep":
         whole = _sentence(words[1:])
@@ -74,17 +67,17 @@ def sentence(words: Words) -> Sentence:
 
 def sentence_forms(words: Words) -> tuple[Form, ...]:
     """Return the forms of clauses that a sentence without a reading may mean; none without lark."""
-    if find_spec("lark") is None:
+    parser = sentence_parser()
+    if parser is None:
         return ()
-    _, vocabulary = _parser()
-    terminals = [term for term in known_terms(words, vocabulary) if term.text not in _EMPTY]
+    terminals = [term for term in known_terms(words, parser.vocabulary) if term.text not in _EMPTY]
     rules = Meanings(words.names)
     if any(term.kind == UNKNOWN or (term.kind == "BOOL" and term.declared is None) for term in terminals):
         return ()
     parts: list[Part] = []
     at = 0
     while at < len(terminals):
-        state, stop = _condition(terminals, at, rules)
+        state, stop = _condition(parser, terminals, at, rules)
         if state is not None:
             parts.append(state)
         elif [term.kind for term in terminals[at : at + 2]] == ["NUMBER", "TIME_UNIT"]:
@@ -98,41 +91,26 @@ def sentence_forms(words: Words) -> tuple[Form, ...]:
     return tuple(form for form in forms(parts) if is_valid((form.clause,)))
 
 
-def _condition(terminals: Sequence[Term], start: int, rules: Rules) -> tuple[State | None, int]:
+def _condition(parser: SentenceParser, terminals: Sequence[Term], start: int, rules: Rules) -> tuple[State | None, int]:
     """Return the longest condition that begins at an index, and where it ends; else None and the next index."""
-    from lark import Token, Tree
-    from lark.exceptions import UnexpectedInput
-
-    parser, _ = _parser()
     if terminals[start].kind not in _FIRST:
         return None, start + 1
     for stop in range(min(len(terminals), start + _LONGEST_PART), start, -1):
         if terminals[stop - 1].kind in (UNKNOWN, "_COMMA"):
             continue
-        try:
-            tree = parser.parse([Token(term.kind, term) for term in terminals[start:stop]], start="part")
-        except UnexpectedInput:
-            continue
-        assert isinstance(tree, Tree)
-        for state in _values(tree.children[0], rules):
+        tree = parser.parse(terminals[start:stop], "part")
+        for state in _values(tree.children[0], rules) if tree else ():
             if isinstance(state, State):
                 return state, stop
     return None, start + 1
 
 
 def _sentence(words: Words) -> Sentence:
-    from lark import Token, Tree
-    from lark.exceptions import UnexpectedInput
-
-    parser, vocabulary = _parser()
-    terminals = terms(words, vocabulary)
-    if not terminals:
+    parser = sentence_parser()
+    terminals = terms(words, parser.vocabulary) if parser else None
+    tree = parser.parse(terminals) if parser and terminals else None
+    if tree is None or not terminals:
         return Sentence()
-    try:
-        tree = parser.parse([Token(term.kind, term) for term in terminals], start="start")
-    except UnexpectedInput:
-        return Sentence()
-    assert isinstance(tree, Tree)
     unique: dict[tuple[str, ...], Reading] = {}
     rules = Meanings(words.names)
     rules.is_lasting = any(term.text in _LASTING for term in terminals)
@@ -141,29 +119,6 @@ def _sentence(words: Words) -> Sentence:
     if len(unique) > _MOST_READINGS:
         return Sentence()
     return Sentence(tuple(unique.values()), next(iter(rules.limits), ""))
-
-
-@lru_cache(maxsize=1)
-def _parser() -> tuple[Lark, Mapping[str, str]]:
-    """Return the parser, and the terminals of the English words; it is built at the first mistake alone."""
-    from pathlib import Path
-
-    from lark import Lark
-    from lark.lexer import Lexer
-
-    class Terms(Lexer):
-        def __init__(self, conf: Any) -> None:
-            pass
-
-        def lex(self, data: Any, parser_state: Any = None) -> Iterator[Any]:
-            return iter(data)
-
-    structure = Path(__file__).with_name("sentences.lark").read_text(encoding="utf-8")
-    parser = Lark(
-        f"{structure}\n{grammar_text()}\n", parser="earley", lexer=Terms, ambiguity="explicit", start=["start", "part"]
-    )
-    words = {terminal.pattern.value: terminal.name for terminal in parser.terminals if terminal.pattern is not None}
-    return parser, words
 
 
 def _values(node: Any, rules: Rules) -> list[Any]:
