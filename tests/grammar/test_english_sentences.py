@@ -206,6 +206,95 @@ ONE_READING = {
     "health stays above 20": ["keep health > 20"],
     "phase stays menu or shift": ["keep phase is menu or phase is shift"],
     "if fire then spray within a second": ["keep within 1 s of fire, spray"],
+    # How long each stretch lasts, and how often.
+    "each spray lasts exactly 3 s": [
+        "keep begins spray implies always for 3 s spray",
+        "avoid time_holding(spray) > 3 s",
+    ],
+    "phase shift must last exactly 3 s": [
+        "keep begins phase is shift implies always for 3 s phase is shift",
+        "avoid time_holding(phase is shift) > 3 s",
+    ],
+    "each spray lasts 1 to 3 s": ["keep begins spray implies always for 1 s spray", "avoid time_holding(spray) > 3 s"],
+    "spray lasts between 500 ms and 3 s": [
+        "keep begins spray implies always for 500 ms spray",
+        "avoid time_holding(spray) > 3 s",
+    ],
+    "spray must not last longer than 1.5 s": ["avoid time_holding(spray) > 1.5 s"],
+    "spray can't go on for more than 2 s": ["avoid time_holding(spray) > 2 s"],
+    "never spray longer than 2 s": ["avoid time_holding(spray) > 2 s"],
+    "spray must not last less than 2 s": ["keep begins spray implies always for 2 s spray"],
+    "hold spray for 5 s without fire": ["reach time_holding(spray and not fire) >= 5 s"],
+    "phase menu must occur exactly once": ["reach times(phase is menu) >= 1", "keep times(phase is menu) <= 1"],
+    "fire 3 times during phase == shift, then boss_dead": [
+        "reach times((begins fire) and phase is shift) >= 3 then boss_dead"
+    ],
+    "for the first 2 min: not fire": ["require always for 2 min not fire"],
+    "phase is menu for the first 3 s": ["require always for 3 s phase is menu"],
+    "fire must not happen in the first 3 s": ["require always for 3 s not fire"],
+    "health drops below 20 at some point\nbut never below 5": ["reach health < 20", "keep health >= 5"],
+    "spray can only last 10 s": ["avoid time_holding(spray) > 10 s"],
+    "spray has to last at least 2 s": ["keep begins spray implies always for 2 s spray"],
+    # Answers.
+    "after fire ends, spray must not happen for 2 s": ["keep ends fire implies always for 2 s not spray"],
+    "when fire, phase must be menu within 3 s and stay menu": [
+        "keep fire implies eventually within 3 s always phase is menu"
+    ],
+    "when fire\nthen health is 3 or less within 5 s\nand stays so": [
+        "keep fire implies eventually within 5 s always health <= 3"
+    ],
+    "given phase is menu\nwhen fire\nthen spray within 2 s": ["keep within 2 s of phase is menu and fire, spray"],
+    "at boss_dead: coins > coins at start": ["keep boss_dead implies coins > initial(coins)"],
+    "fire must be followed by spray within 3 s": ["keep within 3 s of fire, spray"],
+    "every fire must be answered by spray within 3 s": ["keep within 3 s of fire, spray"],
+    "every fire must be spray within 3 s": ["keep within 3 s of fire, spray"],
+    "not fire for 30 s => phase menu": ["keep time_holding(not fire) >= 30 s implies phase is menu"],
+    "phase starts shift => spray within 1 s": ["keep within 1 s of begins (phase is shift), spray"],
+    "when boss_dead, boss_dead": ["keep boss_dead implies always boss_dead"],
+    "fire must be shown if and only if phase is menu": ["keep fire iff phase is menu"],
+    "when fire then health must be 0": ["keep fire implies health <= 0"],
+    "when phase is shift ends, health is 0 within 3 s and remains 0": [
+        "keep ends (phase is shift) implies eventually within 3 s always health <= 0"
+    ],
+    "while phase is shift, when fire, spray within 0.5 s": ["keep within 0.5 s of phase is shift and fire, spray"],
+    # Numbers.
+    "health may rise by at most 30 per step": ["keep health <= previous(health) + 30"],
+    "when fire, coins must be 3 or fewer": ["keep fire implies coins <= 3"],
+    "coins must not increase by more than 1 per step": ["keep coins <= previous(coins) + 1"],
+    "health never drops by more than 10 at once": ["keep health >= previous(health) - 10"],
+    "health never falls by more than 5 in 0.3 s": ["keep health >= previous(previous(previous(health))) - 5"],
+    "coins only go up": ["keep coins >= previous(coins)"],
+    "coins never falls; never fire": ["keep coins >= previous(coins)", "avoid fire"],
+    "health doesn't stay the same for more than 3 s": [
+        "avoid time_holding(health <= previous(health) and health >= previous(health)) > 3 s"
+    ],
+    "while fire, coins and health must not change": [
+        "keep fire implies coins == previous(coins) and health >= previous(health) and health <= previous(health)"
+    ],
+    "both coins and health over 40 within 4 min": ["require eventually within 4 min (coins > 40 and health > 40)"],
+    "when phase is menu\nthen coins is 3 or 4": ["keep phase is menu implies coins == 3 or coins == 4"],
+    "avoid |coins - health| > 60": ["avoid abs(coins - health) > 60"],
+    "coins never above the highest health so far": ["keep coins <= highest(health)"],
+    "fire only when coins higher than 0.2 s ago": ["keep fire implies coins > previous(previous(coins))"],
+    "coins only when phase is shift": ["keep coins > 0 implies phase is shift"],
+    "when fire, no coins": ["keep fire implies coins == 0"],
+    "when boss_dead, more coins than at the start": ["keep boss_dead implies coins > initial(coins)"],
+    # The order of conditions.
+    "phase shift must always directly follow menu": ["keep begins phase is shift implies previously phase is menu"],
+    "phase is menu must be immediately followed by phase is shift": ["keep ends phase is menu implies phase is shift"],
+    "phase never goes directly from menu to results": ["avoid previously (phase is menu) and phase is results"],
+    "from phase is menu you can't go straight to phase is results": [
+        "avoid previously phase is menu and phase is results"
+    ],
+    "phase shift only after menu, results only after shift": [
+        "keep phase is shift implies once phase is menu",
+        "keep phase is results implies once phase is shift",
+    ],
+    "reach fire, spray and boss_dead in any order, then phase is menu": [
+        "reach fire then phase is menu",
+        "reach spray then phase is menu",
+        "reach boss_dead then phase is menu",
+    ],
 }
 
 AGAIN = [
@@ -225,6 +314,9 @@ SEVERAL_READINGS = {
     "pause of 2 s between fire and the next fire": APART,
     "no two consecutive fire within 2 s": APART,
     "never fire twice within 2 s": APART,
+    "fire must never happen twice within 2 s": APART,
+    "fire must not happen more than once within 2 s": APART,
+    "fire not more often than every 2 s": APART,
     "finally(coins >= 3 && fire)": [
         ("require eventually always (coins >= 3 and fire)", "if it must hold at the last step"),
         ("reach (coins >= 3 and fire)", "if once is enough"),
@@ -363,6 +455,30 @@ SEVERAL_READINGS = {
     "count(fire) >= 3": [
         ("reach times(fire) >= 3", "if it counts how often `fire` begins: no clause can count its steps"),
     ],
+    "spray must end no later than 75 s": [
+        ("avoid time_holding(spray) > 75 s", "for each time"),
+        ("require eventually within 75 s not spray", "if the time counts from the first step"),
+    ],
+    "must hold coins == 1 for at least 10 s in a row": [
+        ("reach time_holding(coins == 1) >= 10 s", "if once is enough"),
+        ("keep begins coins == 1 implies always for 10 s coins == 1", "for each time"),
+    ],
+    "phase stays at shift for 3 s": [
+        ("reach time_holding(phase is shift) >= 3 s", "if once is enough"),
+        ("keep begins phase is shift implies always for 3 s phase is shift", "for each time"),
+    ],
+    "after phase == shift, 20 s of phase != shift": [
+        (
+            "avoid (begins phase is shift) then within 20 s (begins phase is shift)",
+            "if it may last, and must not begin again in that time",
+        ),
+        ("avoid phase is shift then within 20 s phase is shift", "if no step with it may follow in that time"),
+        ("keep ends phase is shift implies always for 20 s phase is not shift", "if the time counts from its end"),
+    ],
+    "coins only ever go up by one at a time": [
+        ("keep coins == previous(coins) or coins == previous(coins) + 1", "if it never falls"),
+        ("keep coins > previous(coins) implies coins == previous(coins) + 1", "if it may fall, too"),
+    ],
     "when fire avoid spray": [
         ("avoid fire and spray", "for each step with `fire`"),
         ("keep fire implies always not spray", "if it holds from then on"),
@@ -381,8 +497,11 @@ NO_READING = (
     "keep coins decreases",
     "reach fire for at most 3 s",
     "when fire then spray at most 3 s",
-    "each spray lasts exactly 3 s",
     "reach fire when coins at least 3",
+    "fire leads to spray",
+    "when fire, spray within 3 s and stays at menu",
+    "when fire, coins must be 3 or better",
+    "avoid fire and spray at some point",
 )
 
 UNSAYABLE = {
@@ -392,6 +511,11 @@ UNSAYABLE = {
     "keep fire implies coins >= (coins at begins phase is shift) - 3": "no clause can say what `coins` was at",
     "keep health drops by at most 40 since ends fire": "no clause can say what `health` was at `ends fire`",
     "fire at most 9 times since spray": "let the game count since then",
+    "when fire, coins must be less than at the start of shift": "no clause can say what `coins` was at `shift`",
+    "whenever fire, coins must be greater than at the start of my last phase": "what `coins` was at `phase`",
+    "at some point health is 30 higher than 2 s ago": "no clause can say what `health` was 2 s ago",
+    "health never falls by more than 5 in 30 s": "no clause can say what `health` was 30 s ago",
+    "fire never happens three times within 5 s": "no clause can say how often",
     "avoid more than 2 times fire within 5 s": "no clause can say how often",
     "fire => coins@2s > coins": "no clause can say what `coins` is 2 s later or earlier",
     "coins@fire - coins@spray >= 10": "no clause can say what `coins` was at `fire`",

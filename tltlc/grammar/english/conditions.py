@@ -177,6 +177,10 @@ class Conditions(Quantities):
         left, right = (State(item.text) if isinstance(item, Term) else item for item in (one, other))
         return State(f"{left.at(OR)} iff {right.at(OR)}", RULE)
 
+    def possessed(self, state: State) -> State:
+        """Return what somebody has: `with the key`."""
+        return state
+
     def one_of_two(self, state: State, other: State) -> State:
         return State(f"{state.at(OR)} iff {other.negated().at(OR)}", RULE)
 

@@ -121,9 +121,6 @@ class Intervals(Rules):
             Reading((f"require {a} until {b}",), f"if `{end.text}` must come"),
         ]
 
-    def keep_first(self, duration: Duration, state: State) -> _Found:
-        return Reading((f"require always for {duration.text} {state.at(ATOM)}",))
-
     def finally_at_end(self, state: State) -> _Found:
         return [
             Reading((f"require eventually always {state.at(ATOM)}",), "if it must hold at the last step"),
@@ -191,6 +188,12 @@ class Intervals(Rules):
     def avoid_times_within(self, state: State, number: str, duration: Duration) -> _Found:
         return self.count_within(Counted(state, "<", number), duration)
 
+    def avoid_more_within(self, state: State, sign: str, number: str, duration: Duration) -> _Found:
+        return self.avoid_count_within(Counted(state, sign, number), duration)
+
+    def not_more_often(self, state: State, duration: Duration) -> _Found:
+        return self.apart(duration, state)
+
     def again(self, state: State, duration: Duration) -> _Found:
         return not_again(state, state, duration.text) if state.level == ATOM else None
 
@@ -213,7 +216,9 @@ class Intervals(Rules):
     def durations(self, least: Duration, most: Duration) -> tuple[Duration, Duration]:
         return least, most
 
-    def durations_of_unit(self, least: Term, most: Duration) -> tuple[Duration, Duration]:
+    def durations_of_unit(self, least: Term, *rest: Term | Duration) -> tuple[Duration, Duration]:
+        most = rest[-1]
+        assert isinstance(most, Duration)
         return Duration(least.text, most.unit), most
 
     def lasts_from_to(self, state: State, least: Duration, most: Duration) -> _Found:

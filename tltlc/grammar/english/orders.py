@@ -169,6 +169,39 @@ class Orders(Rules):
         state, following = self.enum_ends(name, value), self.enum(name, *after)
         return None if state is None or following is None else Reading((f"keep {state.text} implies {following.text}",))
 
+    def values_only_after(self, name: Term, *values: Term) -> _Found:
+        states = [self.enum(name, value) for value in values]
+        known = [state for state in states if state is not None]
+        if len(known) < len(states):
+            return None
+        pairs = zip(known[::2], known[1::2], strict=True)
+        return Reading(tuple(f"keep {late.text} implies once {early.at(ATOM)}" for late, early in pairs))
+
+    # What comes right after another thing.
+
+    def value_follows(self, name: Term, late: Term, early: Term) -> _Found:
+        one, other = self.enum(name, late), self.enum(name, early)
+        return None if one is None or other is None else self.directly_follows(one, other)
+
+    def directly_follows(self, late: State, early: State) -> _Found:
+        if max(late.level, early.level) > ATOM:
+            return None
+        return Reading((f"keep {begun_text(late)} implies previously {early.at(ATOM)}",))
+
+    def directly_followed(self, early: State, late: State) -> _Found:
+        if max(late.level, early.level) > ATOM:
+            return None
+        return Reading((f"keep ends {early.at(ATOM)} implies {late.at(OR)}",))
+
+    def never_follows(self, late: State, early: State) -> _Found:
+        if max(late.level, early.level) > ATOM:
+            return None
+        before = State(f"previously {early.at(ATOM)}")
+        return Reading((f"avoid {joined([before, late], 'and').text}",))
+
+    def never_goes(self, early: State, late: State) -> _Found:
+        return self.never_follows(late, early)
+
 
 def _goal(event: Event) -> State | None:
     """Return a goal: `hidden for 4 steps` begins at the first of them, behind the goal before."""

@@ -12,7 +12,9 @@ _CANNOT: Final = (
     "not allowed|not permitted|isn't allowed|are forbidden"
 )
 
-DROPPED: Final = frozenset("the a an player hero character user you they we it there he she i please just".split())
+DROPPED: Final = frozenset(
+    "the a an player hero character user you they we it there he she i please just it's he's she's".split()
+)
 """Words that say nothing, because a spec is always about the player."""
 
 PHRASES: Final[Mapping[str, str]] = {
@@ -36,7 +38,8 @@ PHRASES: Final[Mapping[str, str]] = {
     "between": "between|in between",
     "never": "never|never ever|at no time|under no circumstances|not ever",
     "avoid": "avoid|no|don't|do not|can't|cannot|forbid|prevent|without ever|must not|must never|should not|"
-    "should never|forbidden|illegal|disallowed|not allowed|may not|may never|mustn't|shouldn't|won't",
+    "should never|forbidden|illegal|disallowed|not allowed|may not|may never|mustn't|shouldn't|won't|"
+    "can't be|cannot be|must not be|should not be|may not be|can't ever be|can never be",
     "must_not": _CANNOT,
     "must": _MUST,
     "may": "can|may|can only|may only|is allowed|allowed|can happen|can be|may be|is possible|may happen|"
@@ -49,7 +52,8 @@ PHRASES: Final[Mapping[str, str]] = {
     "next_step": "on the next step|at the next step|in the next step|next step|one step later|on next step|"
     "in next step|at next step|the step after|immediately after",
     "stops": "must stop|must end|is interrupted|is cancelled|stops being true|must be over",
-    "lasts": "lasts|last|must last|should last|takes|stays on|lasts for|holds for|holds",
+    "lasts": "lasts|last|must last|should last|has to last|shall last|always lasts|must always last|needs to last|"
+    "takes|must take|stays on|lasts for|holds for|holds",
     "each": "each|every|any",
     "for": "for|for the next|for a full|for a total of|for next|for at least|at least for|for the following",
     "for_last": "for last|for previous|throughout last|during last|over last|for whole last|for at least last|for past",
@@ -57,6 +61,48 @@ PHRASES: Final[Mapping[str, str]] = {
     "in the next|within the next|in next|within next|not later than|under",
     "first": "in the first|within the first|during the first|in first|within first|during first|for the first|"
     "for first",
+    "last_long": "last|lasts|take|go on|continue|go on for|last for|stay on|be on",
+    "stop": "end|stop|be over|finish|be finished",
+    "hold": "hold|must hold|have to hold|need to hold|maintain|must maintain",
+    "with": "have|has|had|having|with|own|owns|owning|holding|carrying|wearing",
+    "fewer": "less|fewer|lower|below|under|smaller",
+    "further": "more|higher|above|greater|over|up",
+    "only_last": "can only last|may only last|must only last|should only last|only lasts|can only last for|"
+    "may only last for|only lasts for|can only stay on for|can only be on for",
+    "not_more_often": "not more often than every|no more often than every|not more often than once every|"
+    "no more often than once every|not more often than once in|must not be more often than every|"
+    "not more often than once per|no more often than once per",
+    "only": "only|only ever|can only|may only|must only|should only|can only ever|may only ever|only may|only can|"
+    "must only ever",
+    "sometime": "at some point|at some time|sometime|sooner or later|at one point",
+    "directly_follow": "directly follow|immediately follow|come right after|come directly after|follow directly|"
+    "come straight after|directly come after|be right after|happen right after|happen directly after|"
+    "immediately come after",
+    "directly_follows": "directly follows|immediately follows|comes right after|comes directly after|"
+    "follows directly|must directly follow|must immediately follow|must always directly follow|"
+    "always directly follows|must always come right after|must come right after|must come directly after|"
+    "must come straight after|must always come directly after|always comes right after|"
+    "always comes directly after|must follow directly after|must always immediately follow|should directly follow|"
+    "may only directly follow|may only come right after|may only come directly after|can only come right after|"
+    "can only come directly after|can only directly follow",
+    "directly_followed_by": "is directly followed by|is immediately followed by|must be directly followed by|"
+    "must be immediately followed by|is always directly followed by|must always be directly followed by|"
+    "should be directly followed by",
+    "followed_by": "be followed by|is followed by|leads to|lead to|causes|cause|triggers|trigger|is answered by|"
+    "be answered by|results in|result in",
+    "go_to": "go to|go straight to|go directly to|go straight into|jump to|jump straight to|change to|"
+    "change directly to|switch to|switch directly to|directly go to|become|"
+    "go straight|go directly|jump straight|switch directly|change directly|directly become",
+    "happen": "must happen|may happen|can happen|must occur|may occur|can occur|should happen|should occur|happens|"
+    "occurs|happen|occur|must begin|may begin|can begin|must start|may start|can start|may only happen|"
+    "can only happen|may only occur|can only occur|must be used|may be used|can be used|can only be used|"
+    "may only be used|is allowed|must come|comes",
+    "at": "at|in",
+    "remain": "stay|stays|remain|remains|stay so|stays so|stay there|stays there|stay that way|stays that way|"
+    "remains so|stay at|stays at|remain at|remains at|stay like that|stay in|stays in",
+    "highest": "highest|maximum|greatest|largest|peak|max|highest value of|maximum of|max of",
+    "lowest": "lowest|minimum|smallest|least|min|lowest value of|minimum of|min of",
+    "so_far": "so far|until now|until then|ever|up to now|up to then|yet|till now",
     "at_most_for": "for at most|for no more than|for no longer than|no longer than|at most for|not longer than|"
     "for up to|"
     "for a maximum of|never for longer than|never for more than|never longer than",
@@ -76,11 +122,16 @@ PHRASES: Final[Mapping[str, str]] = {
     "not": "not|isn't|don't|doesn't|aren't|do not|does not",
     "be": "is|are|be|being|am|gets|get|has|have|having|stays|stay|remains|remain|holds|hold|happens|happen|occurs|"
     "occur|come|comes|is being|must be|should be|is on|is active|is set|is true|stays true|remains true|is held|"
-    "be true|happens to be|stays on|is still|still",
+    "be true|happens to be|stays on|is still|still|is pressed|pressed|is shown|shown|is visible|visible|is displayed|"
+    "be shown|be pressed|be visible|be displayed|be active|be on|must be shown|must be visible|must be displayed|"
+    "should be shown|should be visible|must stay shown|must be pressed|must be on|must be active|again|is back|"
+    "is back again|comes back|returns|must happen|must occur|must hold",
     "is": "is|equals|is equal to|equal to|is exactly|has|at|in|on|stays|remains|stays at|remains at|is at|is in|"
     "is on|"
-    "be|was|stays in",
-    "is_not": "is not|isn't|not|not in|not at|is not in|is not at|does not equal|differs from|is other than",
+    "be|was|stays in|must be|should be|shall be|has to be|needs to be|must be at|must be in|must equal|must stay|"
+    "must stay at|must stay in|must remain|should stay|waits at|waits in|must wait at",
+    "is_not": "is not|isn't|not|not in|not at|is not in|is not at|does not equal|differs from|is other than|"
+    "must not be|should not be|must not equal|cannot be|can't be|may not be|mustn't be|shouldn't be",
     "earlier": "before|earlier|ago|beforehand|before that",
     "in_total": "in total|total|altogether|overall|in all|in sum",
     "falls_below": "falls below|drops below|goes below|drops under|falls under",
@@ -113,7 +164,8 @@ PHRASES: Final[Mapping[str, str]] = {
     "begins": "begins|begin|starts|start|started|begun|triggers|is triggered|goes up|turns on|happens|appears|"
     "turns true",
     "begins_first": "begins|start of|beginning of|begin of|onset of",
-    "ends": "ends|end|ended|stops|stop|stopped|is over|goes down|turns off|is finished|disappears|turns false|"
+    "ends": "is lost|lost|gets lost|ends|end|ended|stops|stop|stopped|is over|goes down|turns off|"
+    "is finished|disappears|turns false|"
     "finishes",
     "was_before": "was true before|on the step before|on step before|on the frame before|on frame before|"
     "at the step before|at step before|was true on step before",
@@ -132,7 +184,11 @@ PHRASES: Final[Mapping[str, str]] = {
     "goes lower|is decreased|sinks|declines",
     "rises": "increases|increase|rises|rise|grows|grow|goes up|go up|gets higher|is raised|goes higher|is increased",
     "stays": "stays the same|stay the same|stays same|stay same|remains the same|remains same|does not change|"
-    "doesn't change|do not change|is unchanged|stays constant|remains unchanged|stays unchanged|unchanged|constant|"
+    "doesn't change|do not change|must not change|"
+    "cannot change|can't change|may not change|should not change|"
+    "mustn't change|shouldn't change|must stay the same|must remain the same|must stay constant|"
+    "must remain constant|must be constant|has to stay the same|"
+    "is unchanged|stays constant|remains unchanged|stays unchanged|unchanged|constant|"
     "remains constant|keeps its value|is constant|frozen|is frozen|stays frozen|stays put|not change|fixed|is fixed",
     "changes": "changes|change",
     "come": "go on|come on|be triggered|be raised|sound|ring|start|begin|come|trigger|appear|take place|be reached",
@@ -158,13 +214,14 @@ PHRASES: Final[Mapping[str, str]] = {
     "never_above": "never rises above|never exceeds|never goes above",
     "never_below": "never drops below|never falls below|never goes below|doesn't drop below|does not drop below",
     "per_step": "per step|each step|in one step|every step|from one step to next|from step to step|per frame|"
-    "in single step|at once|between steps|between two steps|per tick|at time",
+    "in single step|at once|between steps|between two steps|per tick|at time|at one time|in one go|in step|each time",
     "pause_of": "cooldown of|cooldown|pause of|pause of at least|wait at least|wait|gap of|gap of at least",
     "in_sequence": "consecutive|successive|next|another",
     "means": "means|means that|implies that",
     "count_of": "count|number of|number of times",
     "duration_of": "duration|duration of|time_in|time in|time spent in|hold_time|length of|how long",
-    "later_or_ago": "later|ago|earlier|before|from now|afterwards",
+    "from_now": "later|from now|afterwards",
+    "ago": "ago|earlier|before",
     "previous": "previous|prev|old|previous value of|last value of|last",
 }  # fmt: skip
 """Maps each rule of the grammar to its phrases, which `|` separates."""

@@ -334,7 +334,8 @@ def _answer_readings(when: When, event: Event, state: State, asked: Asked) -> li
     if asked.settled is not None and not is_edge:
         asked = Asked(replace(answer, state=asked.settled))
         answer = asked.answer
-    forbidden = asked.denied or (answer.state.negated() if answer.kind == "lasting" and answer.is_negative else None)
+    is_forbidden = answer.kind == "lasting" and (answer.is_negative or is_negative(answer.state))
+    forbidden = asked.denied or (answer.state.negated() if is_forbidden else None)
     if forbidden is not None and begun_text(forbidden) == begun_text(state):
         # `not a within 5 s` may only ask for a step without a.
         return not_again(state, forbidden, answer.time) if answer.time else []

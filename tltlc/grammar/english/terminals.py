@@ -78,6 +78,8 @@ def _terms(words: Words, vocabulary: Mapping[str, str]) -> Iterator[Term]:
             if at < len(words) and words[at].text == "'":
                 at += 1
                 yield Term("PRIME", "'")
+        elif word.text == ";":
+            yield Term("_SEMICOLON", ";")
         elif word.type == "IMPLIES" and words[start:at].text != "implies":
             yield Term("_ARROW", "->")
         elif word.type == "OR" and words[start:at].text == "|":

@@ -88,6 +88,7 @@ def lines(source: SourceFile, tokens: Sequence[Token], keywords: dict[str, str])
         # `after seen keep hidden for 3 s` is one sentence, and so are the lines of a scenario.
         is_inside = opens in _OPENING_WORDS and not is_first
         is_inside |= opens in _SCENARIO and is_first and token.text.lower() in (*_SCENARIO, *_STEPS)
+        is_inside |= bool(opens) and opens not in keywords and is_first and token.text.lower() == "but"
         begins = is_declaration or (not is_inside and _begins_piece(source, tokens, index, keywords, True))
         if piece and begins:
             yield piece

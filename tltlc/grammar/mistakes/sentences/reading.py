@@ -207,7 +207,8 @@ def _without_label(words: Words) -> Words:
         return words
     is_condition = words.word(0) in ("if", "when", "whenever", "while", "after", "once", "all", "any")
     label = words[: found[0]]
-    is_label = tuple(word.text for word in label) not in _RULE_LABELS and not any(word.is_name for word in label)
+    is_rule = any(word.is_name or word.type == "NUMBER" for word in label)
+    is_label = not is_rule and tuple(word.text for word in label) not in _RULE_LABELS
     rest = words[found[0] + 1 :]
     return rest if is_label or (rest.word(0) in KEYWORDS and not is_condition) else words
 

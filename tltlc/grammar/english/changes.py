@@ -1,0 +1,154 @@
+"""What rules about changes of numbers mean, and how numbers are compared with their values at other steps."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from tltlc.grammar.english.events import Event, Held
+from tltlc.grammar.english.quantities import MIRRORED, Change, Duration, Number, comparison
+from tltlc.grammar.english.rules import Reading, Rules
+from tltlc.grammar.english.terminals import Term
+from tltlc.grammar.mistakes.sentences.states import AND, State, joined
+
+_MOST_STEPS_BACK: Final = 10
+"""The most steps by which a clause looks back at the value of a number."""
+
+_Found = Reading | list[Reading] | None
+
+
+class Changes(Rules):
+    """The meanings of the rules about changes of numbers."""
+
+    def cannot_change_within(self, term: Term, change: Change, sign: str, step: Number, duration: Duration) -> _Found:
+        before = self.value_before(term, duration)
+        opposite = {">": "<=", ">=": "<"}.get(sign)
+        if before is None or opposite is None or change not in ("falls", "rises"):
+            return None
+        operator, relation = ("-", MIRRORED[opposite]) if change == "falls" else ("+", opposite)
+        return Reading((f"keep {term.text} {relation} {before.text} {operator} {step.text}",))
+
+    def cannot_vary(self, term: Term, change: Change) -> _Found:
+        if change in ("rises", "falls"):
+            return self.only_changes(term, "falls" if change == "rises" else "rises")
+        state = self.changes(term, "stays") if change == "varies" else None
+        return None if state is None else Reading((f"keep {state.text}",))
+
+    def cannot_stay(self, term: Term, sign: str, duration: Duration) -> _Found:
+        before = f"previous({term.text})"
+        state = State(f"{term.text} <= {before} and {term.text} >= {before}", AND)
+        return self.avoid(Held(state, sign, duration))
+
+    def some_only_when(self, term: Term, event: Event) -> _Found:
+        is_from_0 = term.declared is not None and term.declared.ends[:1] == ("0",)
+        return self.only_when(State(f"{term.text} > 0"), event) if is_from_0 else None
+
+    def no_number(self, term: Term) -> State | None:
+        is_from_0 = term.declared is not None and term.declared.ends[:1] == ("0",)
+        return comparison(Number(term.text, term), "==", Number("0")) if is_from_0 else None
+
+    def only_changes(self, term: Term, change: Change) -> _Found:
+        sign = {"rises": ">=", "falls": "<="}.get(change)
+        return None if sign is None else Reading((f"keep {term.text} {sign} previous({term.text})",))
+
+    def only_changes_by(self, term: Term, change: Change, step: Number) -> _Found:
+        one_way = self.only_changes(term, change)
+        sign, operator, back = (">", "+", "<=") if change == "rises" else ("<", "-", ">=")
+        if not isinstance(one_way, Reading):
+            return None
+        now, before = term.text, f"previous({term.text})"
+        if term.kind != "INT":
+            return Reading((*one_way.clauses, f"keep {now} {back} {before} {operator} {step.text}"))
+        exactly = f"{now} == {before} {operator} {step.text}"
+        other = "falls" if change == "rises" else "rises"
+        return [
+            Reading((f"keep {now} == {before} or {exactly}",), f"if it never {other}"),
+            Reading((f"keep {now} {sign} {before} implies {exactly}",), f"if it may {other[:-1]}, too"),
+        ]
+
+    def cannot_compare(self, left: Number, sign: str, right: Number) -> _Found:
+        state = comparison(left, sign, right)
+        return None if state is None else Reading((f"keep {state.negated().text}",))
+
+    def falls_but_never(self, term: Term, limit: Number, sign: str, never: Number) -> _Found:
+        return self._reached_but_never(term, "<", limit, sign, never)
+
+    def rises_but_never(self, term: Term, limit: Number, sign: str, never: Number) -> _Found:
+        return self._reached_but_never(term, ">", limit, sign, never)
+
+    def _reached_but_never(self, term: Term, reached: str, limit: Number, sign: str, never: Number) -> _Found:
+        kept = self.cannot_compare(Number(term.text, term), sign, never)
+        goal = comparison(Number(term.text, term), reached, limit)
+        if goal is None or not isinstance(kept, Reading):
+            return None
+        return Reading((f"reach {goal.text}", *kept.clauses))
+
+    # Values at other steps.
+
+    def value_before(self, term: Term, duration: Duration) -> Number | None:
+        """Return the value of a number so long ago; a limit if that is too many steps."""
+        steps = round(self.steps(duration), 6)
+        if steps == int(steps) and 0 < steps <= _MOST_STEPS_BACK:
+            return Number("previous(" * int(steps) + term.text + ")" * int(steps), term)
+        self.limits.append(
+            f"no clause can say what `{term.text}` was {duration.text} ago, unless that is a few steps: let the game "
+            f"supply that number as a signal, and compare `{term.text}` with it"
+        )
+        return None
+
+    def compared_with_value_before(self, term: Term, sign: str, duration: Duration) -> State | None:
+        before = self.value_before(term, duration)
+        return None if before is None else comparison(Number(term.text, term), sign, before)
+
+    def apart_from_value_before(self, term: Term, step: Number, sign: str, duration: Duration) -> State | None:
+        before = self.value_before(term, duration)
+        if before is None:
+            return None
+        operator, relation = ("+", ">=") if sign == ">" else ("-", "<=")
+        return comparison(Number(term.text, term), relation, Number(f"{before.text} {operator} {step.text}", term))
+
+    def compared_with_initial(self, term: Term, sign: str) -> State | None:
+        return comparison(Number(term.text, term), sign, self.initial(term))
+
+    def moment(self, *terms: Term) -> str:
+        return " ".join(term.text for term in terms)
+
+    def compared_with_value_at(self, term: Term, sign: str, moment: str) -> None:
+        self.value_at(term, Term("BOOL", moment))
+
+    def highest(self, term: Term) -> Number:
+        return Number(f"highest({term.text})", term)
+
+    def lowest(self, term: Term) -> Number:
+        return Number(f"lowest({term.text})", term)
+
+    # Several numbers.
+
+    def number_names(self, *terms: Term) -> list[tuple[Term, ...]]:
+        return [terms]
+
+    def one_number(self, term: Term, *values: Term) -> State | None:
+        states = [comparison(Number(term.text, term), "==", Number(value.text)) for value in values]
+        return joined([state for state in states if state is not None], "or")
+
+    def at_most_value(self, left: Number, limit: Number) -> State | None:
+        return comparison(left, "<=", limit)
+
+    def at_least_value(self, left: Number, limit: Number) -> State | None:
+        return comparison(left, ">=", limit)
+
+    def all_change(self, terms: tuple[Term, ...], change: Change) -> State | None:
+        return _all([self.changes(term, change) for term in terms])
+
+    def all_stay(self, *terms: Term) -> State | None:
+        return self.all_change(terms, "stays")
+
+    def all_compared(self, terms: tuple[Term, ...], sign: str, limit: Number) -> State | None:
+        return _all([comparison(Number(term.text, term), sign, limit) for term in terms])
+
+    def all_in_comparison(self, terms: tuple[Term, ...], sign: Term, limit: Number) -> State | None:
+        return self.all_compared(terms, sign.text, limit)
+
+
+def _all(states: list[State | None]) -> State | None:
+    known = [state for state in states if state is not None]
+    return joined(known, "and") if len(known) == len(states) else None

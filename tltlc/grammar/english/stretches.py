@@ -1,0 +1,130 @@
+"""What rules about stretches of steps mean: how long a condition holds, how often, and within which time."""
+
+from __future__ import annotations
+
+from tltlc.core.record import replace
+from tltlc.grammar.english.answers import MOST_STEPS, Asked, is_negative
+from tltlc.grammar.english.events import Counted, Event, Held, as_state
+from tltlc.grammar.english.intervals import Intervals
+from tltlc.grammar.english.orders import Orders
+from tltlc.grammar.english.quantities import Duration
+from tltlc.grammar.english.rules import Goals, Reading, When, begun_text
+from tltlc.grammar.english.terminals import Term
+from tltlc.grammar.mistakes.sentences.answers import Answer
+from tltlc.grammar.mistakes.sentences.states import ATOM, State, joined
+
+_Found = Reading | list[Reading] | None
+
+
+class Stretches(Intervals, Orders):
+    """The meanings of the rules about stretches of steps with a condition, and about what happens in a time."""
+
+    # How long each stretch lasts.
+
+    def cannot_last(self, state: State, sign: str, duration: Duration) -> _Found:
+        if sign in ("<", "<="):
+            return self.lasts_at_least(state, duration) if sign == "<" else None
+        return self.avoid(Held(state, sign, duration))
+
+    def lasts_less(self, state: State, duration: Duration) -> _Found:
+        return self.avoid(Held(state, ">=", duration))
+
+    def must_stop(self, state: State, duration: Duration) -> _Found:
+        stretch = self.keep_short(state, duration)
+        if not isinstance(stretch, Reading):
+            return None
+        return [
+            replace(stretch, condition="for each time"),
+            Reading((f"require eventually within {duration.text} {state.negated().at(ATOM)}",),
+                    "if the time counts from the first step"),
+        ]  # fmt: skip
+
+    def lasts_exactly(self, state: State, duration: Duration) -> _Found:
+        if self.steps(duration) <= MOST_STEPS:
+            return super().lasts_exactly(state, duration)
+        return self.lasts_between(state, (duration, duration))
+
+    def hold(self, state: State, *rest: str | Duration) -> _Found:
+        goal, each = self._held_goal(state, rest), self.lasts_at_least(state, _duration(rest))
+        if goal is None or not isinstance(each, Reading):
+            return None
+        return [Reading(goal, "if once is enough"), Reading(each.clauses, "for each time")]
+
+    def hold_without(self, state: State, *rest: str | Duration | State) -> _Found:
+        avoided = rest[-1]
+        assert isinstance(avoided, State)
+        goal = self._held_goal(joined([state, avoided.negated()], "and"), rest[:-1])
+        return None if goal is None else Reading(goal)
+
+    def _held_goal(self, state: State, rest: tuple[str | Duration | State, ...]) -> tuple[str, ...] | None:
+        sign = rest[0] if isinstance(rest[0], str) else ""
+        if sign in ("<", "<="):
+            return None
+        reading = self.reach(Goals((held,))) if (held := as_state(Held(state, sign, _duration(rest)))) else None
+        return reading.clauses if isinstance(reading, Reading) else None
+
+    # The first time of play.
+
+    def first_avoid(self, duration: Duration, state: State) -> _Found:
+        return self.avoid_first(state, duration)
+
+    def keep_first(self, state: State, duration: Duration) -> _Found:
+        return Reading((f"require always for {duration.text} {state.at(ATOM)}",))
+
+    def first_keep(self, duration: Duration, state: State) -> _Found:
+        return self.keep_first(state, duration)
+
+    def sometime(self, event: Event) -> _Found:
+        state = as_state(event)
+        return None if state is None or is_negative(state) else self.reach(Goals((state,)))
+
+    # What is counted while something else holds.
+
+    def counted_while(self, state: State, number: str, during: State) -> Counted | None:
+        """Return how often a condition begins while another one holds."""
+        if state.text.startswith("not ") or state.level > ATOM:
+            return None
+        begun = State(f"({begun_text(state)})")
+        return Counted(joined([begun, during], "and"), "", number)
+
+    def reach_counted(self, counted: Counted, *events: Event) -> _Found:
+        return self.bare_goals(counted, *events)
+
+    # Answers.
+
+    def first(self, when: When, event: Event, answers: list[Asked]) -> _Found:
+        answer = answers[0].answer
+        if isinstance(event, State) and event.text == answer.state.text and answer.kind == "now" and not answers[1:]:
+            answers = [Asked(replace(answer, kind="always"))]  # once it holds, it stays so
+        return super().first(when, event, answers)
+
+    def each_within(self, event: Event, state: State, duration: Duration) -> _Found:
+        asked = self.within(state, duration)
+        return self.first("each", event, [asked]) if isinstance(asked, Asked) else None
+
+    def twice_conditional(
+        self, when: When, event: Event, when_too: When, event_too: Event, answers: list[Asked]
+    ) -> _Found:
+        one, other = as_state(event), as_state(event_too)
+        if one is None or other is None or "after" in (when, when_too) or when_too == "while":
+            return None
+        return self.first(when_too, joined([one, other], "and"), answers)
+
+    def at_condition(self, state: State, answers: list[Asked]) -> _Found:
+        return self.first("when", state, answers)
+
+    def followed_by(self, event: Event, answers: list[Asked]) -> _Found:
+        if any(asked.answer.kind == "now" and not asked.is_formula for asked in answers):
+            return None  # at the same step, or later
+        return self.first("when", event, answers)
+
+    def settles(self, state: State, duration: Duration, value: Term | None = None) -> Asked | None:
+        """Return the answer of `a within 3 s and stay so`."""
+        if value is not None and value.text not in state.text.split():
+            return None
+        formula = State(f"eventually within {duration.text} always {state.at(ATOM)}")
+        return Asked(Answer("now", formula), is_formula=True)
+
+
+def _duration(parts: tuple[object, ...]) -> Duration:
+    return next(part for part in parts if isinstance(part, Duration))
