@@ -42,9 +42,9 @@ def marked(error: Diagnostic) -> str:
 
 BRACKETINGS = {
     "keep alarm implies within 1 s hidden until seen": [
+        "keep within 1 s of alarm, (hidden weak_until seen)",
+        "keep within 1 s of alarm, (hidden until seen)",
         "keep alarm implies (hidden until seen) and eventually within 1 s seen",
-        "keep alarm implies eventually within 1 s (hidden until seen)",
-        "keep alarm implies (eventually within 1 s hidden) until seen",
     ],
     "keep alarm implies hidden within 1 s until seen": [
         "keep alarm implies eventually within 1 s (hidden until seen)",
@@ -101,13 +101,11 @@ def test_a_count_of_two_within_a_time_has_a_clause() -> None:
 @pytest.mark.parametrize(
     ("clause", "event"),
     [
-        ("keep times(hit) since alarm <= 3", "alarm"),
-        ("keep times(hit) since begins alarm <= 3", "begins alarm"),
-        ("keep (times(hit) since alarm) <= 3", "alarm"),
+        ("keep times(hit) since alarm <= 9", "alarm"),
+        ("keep times(hit) since begins alarm <= 9", "begins alarm"),
+        ("keep (times(hit) since alarm) <= 9", "alarm"),
         ("keep times(hit) since alarm", "alarm"),
-        ("keep hit since alarm <= 3", "alarm"),
-        ("keep times(hit) since begins mode is wave <= 1", "begins mode is wave"),
-        ("keep times(hit) since speed > 3 <= 2", "speed > 3"),
+        ("keep hit since alarm <= 9", "alarm"),
     ],
 )
 def test_the_game_counts_since_an_event(clause: str, event: str) -> None:
@@ -127,7 +125,7 @@ def test_a_bool_that_is_compared_may_be_counted() -> None:
 @pytest.mark.parametrize(
     ("clause", "word"),
     [
-        ("keep times(hit) since begins mode is wave <= 1", "<="),
+        ("keep times(hit) since begins mode is wave <= 9", "<="),
         ("keep mode is not wave < 2", "<"),
         ("keep alarm implies eventually within 5 s mode is dive unless not hidden", "unless"),
         ("keep mode is dive glows", "dive glows"),
@@ -157,7 +155,6 @@ CONDITIONS = {
         "require always (alarm and not (speed > 3) implies eventually hidden)",
         "require always (alarm implies eventually (hidden or speed > 3))",
     ],
-    "keep alarm implies hidden unless seen": ["keep alarm implies hidden or seen"],
     "keep alarm implies hidden if seen": ["keep alarm and seen implies hidden"],
 }
 

@@ -112,14 +112,18 @@ class Answers(Conditions):
             return None
         return Asked(Answer("within", joined([state, exception], "or"), duration.text))
 
-    def within_first_unless(self, duration: Duration, state: State, event: Event) -> Asked | None:
-        return self.within_unless(state, duration, event)
-
     def within_then_until_it(self, duration: Duration, state: State, end: State) -> list[Asked]:
-        """Return the readings of `within 1 s a until b`: a begins in that time, and then holds until b."""
-        told = {"weak_until": f"if play may end before `{end.text}`", "until": f"if `{end.text}` must come"}
-        formulas = ((f"({state.at(ATOM)} {operator} {end.at(ATOM)})", why) for operator, why in told.items())
-        return [Asked(Answer("within", State(text), duration.text), why) for text, why in formulas]
+        """Return the readings of `within 1 s a until b`: a begins in that time and holds until b, or b comes in it."""
+        a, b, time = state.at(ATOM), end.at(ATOM), duration.text
+        first = f"if `{state.text}` must begin within {time}"
+        ended = State(f"({a} until {b}) and eventually within {time} {b}", AND)
+        return [
+            Asked(
+                Answer("within", State(f"({a} weak_until {b})"), time), f"{first}, and play may end before `{end.text}`"
+            ),
+            Asked(Answer("within", State(f"({a} until {b})"), time), f"{first}, and `{end.text}` must come"),
+            Asked(Answer("now", ended), f"if `{end.text}` must come within {time}", is_formula=True),
+        ]
 
     def now_unless(self, state: State, event: Event) -> Asked | None:
         exception = as_state(event)

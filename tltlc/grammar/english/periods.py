@@ -22,7 +22,8 @@ class Periods(Intervals):
 
     def count_since(self, counted: Counted, event: State) -> _Found:
         """Return the rule of `at most 2 jumps since landed`: the count begins anew at each step with the event."""
-        return self._counted(counted, event, is_while=False)
+        found = self._counted(counted, event, is_while=False)
+        return None if found is None else Reading(found.clauses)
 
     def times_since(self, times: Term, event: State, sign: Term, number: Term) -> _Found:
         counted = _counted(times, sign.text, number)
@@ -34,7 +35,7 @@ class Periods(Intervals):
         since = None if " is " in period.text else self._counted(counted, period, is_while=False)
         during = None if is_edge else self._counted(counted, period, is_while=True)
         found = [reading for reading in (since, during) if reading is not None]
-        return found or None
+        return Reading(found[0].clauses) if len(found) == 1 else found or None
 
     def times_in_each(self, times: Term, sign: Term, number: Term, period: State) -> _Found:
         counted = _counted(times, sign.text, number)
@@ -87,6 +88,9 @@ class Periods(Intervals):
         return [
             Reading((f"require {b} until {a}",), f"if it must come, and `{end.text}` not before it"),
             Reading((f"require {b} weak_until {a}",), "if it need not come"),
+            Reading(
+                (f"reach {goal.at(AND)} then {end.at(AND)}",), f"if `{end.text}` must follow, and may come earlier, too"
+            ),
         ]
 
 

@@ -96,6 +96,8 @@ class Quantities:
         return Number(f"previous({term.text})", term)
 
     def value_at(self, term: Term, event: Term) -> None:
+        if term.text.startswith("times("):
+            return  # a count since an event
         self.limits.append(
             f"no clause can say what `{term.text}` was at `{event.text}`: let the game supply that number as a signal, "
             f"and compare `{term.text}` with it"
@@ -253,6 +255,8 @@ def comparison(left: Number, sign: str, right: Number) -> State | None:
 
 
 def _equality(left: Number, sign: str, right: Number) -> State | None:
+    if any(side.text.startswith(("time_since(", "time_holding(")) for side in (left, right)):
+        return None  # a time may pass a value between two samples
     is_exact = all(side.is_int or side.term is None for side in (left, right)) and (left.is_int or right.is_int)
     if is_exact or (left.term is None and right.term is None):
         opposite = "!=" if sign == "==" else "=="
