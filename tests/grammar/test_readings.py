@@ -123,6 +123,7 @@ READINGS: Mapping[str, tuple[Meaning, ...]] = {
     "keep a and b for 2 s": (lambda t: lasts(both(a(t), b(t)), 3), lambda t: all(both(a(t), b(t))[:2])),
     "keep a for 3 steps": (lambda t: lasts(a(t), 3), lambda t: all(a(t)[:3])),
     "reach a then b within 2 s": (
+        lambda t: any(now and any(a(t)[:i]) for i, now in enumerate(b(t)[:3])),
         lambda t: follows([now and not (i and a(t)[i - 1]) for i, now in enumerate(a(t))], b(t)),
         lambda t: follows(a(t), b(t)),
     ),

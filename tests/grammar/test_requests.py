@@ -205,8 +205,9 @@ def test_an_event_that_is_asked_for_infinitely_often_needs_sessions_without_an_e
         ),
         (
             "when off_track then keep not off_track for 5 seconds",
-            "write `avoid (begins off_track) then within 5 s (begins off_track)` if it must not begin again in that "
-            "time, `keep ends off_track implies always for 5 s not off_track` if the time counts from its end",
+            "write `avoid (begins off_track) then within 5 s (begins off_track)` if it may last, and must not begin "
+            "again in that time, or `avoid off_track then within 5 s off_track` if no step with it may follow in that "
+            "time, or `keep ends off_track implies always for 5 s not off_track` if the time counts from its end",
         ),
     ],
 )

@@ -35,7 +35,6 @@ MEANINGS: dict[str, Meaning] = {
     "keep a only when b": lambda t: not any(x and not y for x, y in t),
     "keep a only after b": holds_only_after,
     "avoid a for longer than 2 s": lambda t: longest(t) <= 2,
-    "avoid a again within 2 s": lambda t: not any(0 < j - i <= 2 for i in starts(t) for j in starts(t)),
     "keep a requires once b": holds_only_after,
     "keep a ==> b": lambda t: not any(x and not y for x, y in t),
     "keep a --> b": lambda t: not any(x and not y for x, y in t),

@@ -173,7 +173,9 @@ class Conditions(Quantities):
         pairs = [(a, b) for at, a in enumerate(states) for b in states[at + 1 :]]
         return joined([State(f"not ({joined([a, b], 'and').text})") for a, b in pairs], "and")
 
-    def same(self, one: Term | State, other: Term | State) -> State:
+    def same(self, one: Term | State, other: Term | State) -> State | None:
+        if any(isinstance(item, Term) and item.declared is None for item in (one, other)):
+            return None  # an imported name may be a number
         left, right = (State(item.text) if isinstance(item, Term) else item for item in (one, other))
         return State(f"{left.at(OR)} iff {right.at(OR)}", RULE)
 
@@ -181,7 +183,9 @@ class Conditions(Quantities):
         """Return what somebody has: `with the key`."""
         return state
 
-    def one_of_two(self, state: State, other: State) -> State:
+    def one_of_two(self, state: State, other: State) -> State | None:
+        if max(state.level, other.level) > ATOM or state.text.startswith("not "):
+            return None  # `a and b xor c` may be about b alone
         return State(f"{state.at(OR)} iff {other.negated().at(OR)}", RULE)
 
     # What lasts, and what is counted.

@@ -18,7 +18,7 @@ from tltlc.grammar.english.terminals import UNKNOWN, Term, known_terms, terms
 from tltlc.grammar.english.transitions import Transitions
 from tltlc.grammar.mistakes.sentences.states import State
 from tltlc.grammar.mistakes.sentences.validity import is_valid
-from tltlc.grammar.mistakes.sentences.words import Words
+from tltlc.grammar.mistakes.sentences.words import Words, phrases
 
 _MOST_READINGS: Final = 3
 """The most readings that a help names."""
@@ -32,6 +32,8 @@ _CONTENT: Final = frozenset((*_FIRST, UNKNOWN, "VALUE", "SIGN", "UNIT", "TIME_UN
 """The terminals that a sentence which is understood has in conditions and times alone."""
 _LASTING: Final = frozenset("stays stay remains remain must should never".split())
 """Words of a condition alone that make it a rule for every step."""
+_VERBS: Final = phrases("lasts", "goes", "follows", "is followed", "happens", "must", "may", "changes only")
+"""Words that need no `keep` before their sentence."""
 _MOST: Final = 64
 """The most ways in which the parts of one phrase are put together."""
 
@@ -55,7 +57,7 @@ def sentence(words: Words) -> Sentence:
     load, no sentence is read.
     """
     whole = _sentence(words)
-    if not whole.readings and not whole.limit and words.word(0) == "keep":
+    if not whole.readings and not whole.limit and words.word(0) == "keep" and words.find(_VERBS):
         whole = _sentence(words[1:])
     lines = words.lines()
     if whole.readings or whole.limit or len(lines) < 2:

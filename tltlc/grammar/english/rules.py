@@ -99,8 +99,8 @@ class Rules(Answers):
         return Reading((f"keep {term.text} {relation} previous({term.text}) {operator} {step.text}",))
 
     def keep(self, state: State) -> _Found:
-        if state.text in self.changing or self.count_condition(state.text):
-            return None  # the first step has no value before
+        if state.text in self.changing or self.count_condition(state.text) or state.text.startswith("time_holding("):
+            return None  # the first step has no value before, and no time
         return Reading((f"keep {state.text}",))
 
     def limit_count(self, counted: Counted) -> _Found:
@@ -255,7 +255,9 @@ class Rules(Answers):
         answer = answers[0].answer
         condition = _at(answer.state.negated() if answer.is_negative else answer.state, condition)
         # `a and b unless c` is the same, whatever `unless` belongs to.
-        is_clear = answer.is_negative and " or " not in f"{answer.state.text} {condition and condition.text}"
+        words = answer.state.negated().text.split()
+        is_simple = condition is not None and (not isinstance(event, State) or are_simple(condition))
+        is_clear = answer.is_negative and not {"or", "not"} & {*words} and is_simple
         if condition is None or not (is_clear or are_simple(condition, answer.state)):
             return None
         if answer.kind == "always" and answer.is_negative:

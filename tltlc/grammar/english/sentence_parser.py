@@ -6,7 +6,6 @@ from collections.abc import Iterator, Mapping, Sequence
 from copy import copy
 from functools import lru_cache
 from importlib.util import find_spec
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from tltlc.grammar.english.phrases import grammar_text
@@ -27,6 +26,8 @@ class SentenceParser:
     """
 
     def __init__(self) -> None:
+        from pathlib import Path
+
         from lark import Lark
         from lark.lexer import Lexer
 

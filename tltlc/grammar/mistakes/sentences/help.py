@@ -156,13 +156,13 @@ def _with_readings(failure: ParseFailure, diagnostic: Diagnostic, found: tuple[R
         for reading in found
         if is_valid(reading.clauses) and not failure.lacks_fixed_clock(" ".join(reading.clauses))
     ]
-    if not valid:
+    span = span_of(failure.tokens[:-1])
+    if not valid or "//" in failure.source.slice(span):
         return diagnostic
     texts = [" and ".join(f"`{clause}`" for clause in reading.clauses) for reading in valid]
     if len(valid) > 1 or valid[0].condition:
         described = [f"{text} {reading.condition}".rstrip() for text, reading in zip(texts, valid, strict=True)]
         return replace(diagnostic, help=f"write {', or '.join(described)}", fixes=())
-    span = span_of(failure.tokens[:-1])
     indent = failure.source.text[: span.start].rpartition("\n")[2]
     separator = f"\n{indent}" if not indent.strip() else " "
     fix = replacement_fix(failure.source, span, separator.join(valid[0].clauses))
