@@ -22,6 +22,8 @@ _IMPLICATIONS: Final = frozenset(("implies", "->", "=>"))
 _PAIRED: Final = frozenset("between both either neither exactly precisely to".split())
 """Words whose meaning no form has."""
 _MODALS: Final = ("must", "should", "may", "can", "will", "shall")
+_UNCLEAR: Final = frozenset("unless again longer may allowed end ends least more less but".split())
+"""Words beside two conditions that the forms would take for their opposite, or leave out."""
 _NEGATIONS: Final = frozenset("no not never avoid without cannot can't don't mustn't nor".split())
 
 
@@ -147,6 +149,8 @@ def forms(parts: Sequence[Part]) -> tuple[Form, ...]:
     key = (len(conditions), bool(durations), bool(numbers))
     if len([part for part in parts if isinstance(part, Term) and part.kind == "NUMBER"]) > len(numbers):
         return ()
+    if len(conditions) > 1 and not numbers and not _UNCLEAR.isdisjoint(words):
+        return ()
     if key not in PATTERNS or len(durations) > 1 or len(numbers) > 1 or not set(words).isdisjoint(_PAIRED):
         return ()
     slots = _slots(parts, conditions)
@@ -157,6 +161,8 @@ def forms(parts: Sequence[Part]) -> tuple[Form, ...]:
     ranked = sorted(known, key=lambda pattern: -len(cues & set(pattern.cues.split())))
     fitting = [pattern for pattern in ranked if cues & set(pattern.cues.split())] or known[:3]
     quoted = {name: f"`{text}`" if name not in "Tn" else text for name, text in texts.items()}
+    in_steps = any(duration.is_steps for duration in durations)
+    fitting = [p for p in fitting if not (in_steps and "time_holding" in p.clause)]  # which is a time in seconds
     found = (Form(p.clause.format(**texts), p.says.format(**quoted)) for p in fitting)
     return tuple({form.clause: form for form in found}.values())[:_MOST_FORMS]
 

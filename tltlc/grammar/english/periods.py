@@ -52,11 +52,11 @@ class Periods(Intervals):
             )
             return None
         begun = State(begun_text(counted.state))
-        one = joined([begun, event], "and") if is_while else begun
-        going_on = event.at(ATOM) if is_while else f"not {event.at(ATOM)}"
-        seen = one
+        going_on = event if is_while else event.negated()
+        one = joined([begun, going_on], "and")
+        seen = one if is_while else begun
         for _ in range(number):
-            seen = State(f"{one.at(AND)} and previously ({going_on} since {seen.at(ATOM)})", AND)
+            seen = State(f"{one.at(AND)} and previously ({going_on.at(ATOM)} since {seen.at(ATOM)})", AND)
         told = f"if it counts while `{event.text}` holds" if is_while else f"if each `{event.text}` begins a new count"
         return Reading((f"avoid {seen.text}",), told)
 

@@ -36,6 +36,8 @@ class Transitions(Rules):
         text = state.text
         if text in self.changing or text in self.settled or text.isidentifier() or is_negative(state):
             return None
+        if any(f"{sign} {of}(" in text for sign in "<>" for of in ("previous", "highest", "lowest")):
+            return None  # the first step does not meet it
         keep, reach = Reading((f"keep {text}",), "for every step"), Reading((f"reach {text}",), "if it is a goal")
         is_most = state.opposite in (text.replace("<=", ">"), text.replace("<", ">="))
         if text.startswith("times("):

@@ -148,8 +148,8 @@ def _reached(words: Words) -> Answer | None:
 
 def _negated(answer: Answer, *, is_never: bool = False) -> Answer | None:
     """Return the answer that asks for the opposite; `never a` asks for it from then on."""
-    if answer.kind not in ("now", "lasting", "within", "always"):
-        return None
+    if answer.kind not in ("now", "lasting", "within", "always") or answer.state.level > ATOM:
+        return None  # `no a and b` may be about a alone
     kind: Kind = "always" if is_never and answer.kind == "now" else answer.kind
     return Answer(kind, answer.state.negated(), answer.time, True)
 

@@ -33,6 +33,8 @@ def goal_of(words: Words) -> Clauses | None:
     is_first = words.word(0) in ("first", "firstly")
     if is_first:
         words = words[1:]
+    if words.find(phrases("followed by")):
+        return None  # a rule about each time, or two goals
     verb = words.phrase(0, VERBS)
     parts = words[len(verb) :].split(SEQUENCE)
     if words[len(verb) :].phrase(0, [*NOT, *PROHIBITIONS]) or (verb == ("buy",) and words.find([("with",)])):

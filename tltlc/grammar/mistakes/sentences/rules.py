@@ -128,6 +128,8 @@ def _condition_first(words: Words) -> Clauses | None:
             continue
         if answer.keyword == "keep" and answer.kind not in ("now", "lasting", "always"):
             return None  # `after a, keep b within 5 s` may ask for one step, or for all of that time
+        if answer.kind == "now" and event.text in (f"begins {answer.state.text}", f"begins ({answer.state.text})"):
+            return None  # it holds there already
         is_each = phrase in (_EACH if answer.kind == "now" else _LASTING)
         return answered(event, answer, is_from_then=phrase in FROM_THEN, is_each=is_each)
     return None
@@ -329,7 +331,7 @@ def _unconditional(words: Words) -> Clauses | None:
         if limited is not None:
             return limited
     prohibited = _prohibited(words)
-    if prohibited is not None:
+    if prohibited is not None and not (words.find(phrases("and", "or")) and words.find(NEVER, 1)):
         return (f"avoid {prohibited.text}",)
     if len(words) == 3 and words[0].text.startswith("times(") and words[1].text in ("<", "<=") and words.number(2):
         return (f"keep {words.text}",)

@@ -79,6 +79,12 @@ def state_of(words: Words) -> State | None:
         return _all_of([_negation(part) for part in parts], "and")
     for operator in ("or", "and"):
         parts = words.split(phrases(operator, f", {operator}"))
+        if (
+            operator == "or"
+            and any(part.find(NOT) for part in parts[:-1])
+            and (len(parts[-1]) == 1 or any(word.is_renamed for word in parts[-1]))
+        ):
+            return None  # neither of two values
         if len(parts) > 1:
             # `a, b or c` is a list.
             first = [item for part in parts[:-1] for item in part.split(phrases(","))]
