@@ -163,8 +163,8 @@ def forms(parts: Sequence[Part]) -> tuple[Form, ...]:
     quoted = {name: f"`{text}`" if name not in "Tn" else text for name, text in texts.items()}
     in_steps = any(duration.is_steps for duration in durations)
     fitting = [p for p in fitting if not (in_steps and "time_holding" in p.clause)]  # which is a time in seconds
-    found = (Form(p.clause.format(**texts), p.says.format(**quoted)) for p in fitting)
-    return tuple({form.clause: form for form in found}.values())[:_MOST_FORMS]
+    all_forms = (Form(p.clause.format(**texts), p.says.format(**quoted)) for p in fitting)
+    return tuple({form.clause: form for form in all_forms}.values())[:_MOST_FORMS]
 
 
 def _slots(parts: Sequence[Part], conditions: Sequence[int]) -> dict[str, State]:

@@ -69,17 +69,17 @@ class Intervals(Rules):
         if not is_least <= number <= _MOST_COUNTED:
             return None
         if is_least and is_most:
-            forms = [(_exactly_one(state, start, end), told) for state, told in _each_or_begun(counted.state)]
-            return [Reading((clause,), told) for clause, told in forms] if number == 1 else None
+            forms = [(_exactly_one(state, start, end), condition) for state, condition in _each_or_begun(counted.state)]
+            return [Reading((clause,), condition) for clause, condition in forms] if number == 1 else None
         if is_least and number == 1:
             return Reading((_at_the_end([counted.state], start, end),))
         readings = []
-        for state, told in _each_or_begun(counted.state):
+        for state, condition in _each_or_begun(counted.state):
             clause = _at_the_end([state] * number, start, end)
             if is_most:
                 seen = _seen([state] * number, start, end)
                 clause = f"avoid {state.text} and not {end.at(ATOM)} and {seen.text}"
-            readings.append(Reading((clause,), told))
+            readings.append(Reading((clause,), condition))
         return readings
 
     def between_count(self, span: Span, counted: Counted) -> _Found:

@@ -1,4 +1,4 @@
-"""What rules about periods mean: how often something happens since an event or in each mode, and how often in turn."""
+"""What rules about periods mean: how often something happens since an event, or in each mode."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ class Periods(Intervals):
 
     def count_since(self, counted: Counted, event: State) -> _Found:
         """Return the rule of `at most 2 jumps since landed`: the count begins anew at each step with the event."""
-        found = self._counted(counted, event, is_while=False)
-        return None if found is None else Reading(found.clauses)
+        reading = self._counted(counted, event, is_while=False)
+        return None if reading is None else Reading(reading.clauses)
 
     def times_since(self, times: Term, event: State, sign: Term, number: Term) -> _Found:
         counted = _counted(times, sign.text, number)
@@ -34,8 +34,8 @@ class Periods(Intervals):
         is_edge = period.text.startswith(("begins ", "ends "))
         since = None if " is " in period.text else self._counted(counted, period, is_while=False)
         during = None if is_edge else self._counted(counted, period, is_while=True)
-        found = [reading for reading in (since, during) if reading is not None]
-        return Reading(found[0].clauses) if len(found) == 1 else found or None
+        readings = [reading for reading in (since, during) if reading is not None]
+        return Reading(readings[0].clauses) if len(readings) == 1 else readings or None
 
     def times_in_each(self, times: Term, sign: Term, number: Term, period: State) -> _Found:
         counted = _counted(times, sign.text, number)
@@ -57,8 +57,10 @@ class Periods(Intervals):
         seen = one if is_while else begun
         for _ in range(number):
             seen = State(f"{one.at(AND)} and previously ({going_on.at(ATOM)} since {seen.at(ATOM)})", AND)
-        told = f"if it counts while `{event.text}` holds" if is_while else f"if each `{event.text}` begins a new count"
-        return Reading((f"avoid {seen.text}",), told)
+        condition = (
+            f"if it counts while `{event.text}` holds" if is_while else f"if each `{event.text}` begins a new count"
+        )
+        return Reading((f"avoid {seen.text}",), condition)
 
     def change_since(self, term: Term, change: Change, *rest: str | Number | State) -> None:
         event = rest[-1]

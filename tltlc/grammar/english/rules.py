@@ -379,8 +379,8 @@ def not_again(event: State, state: State, time: str) -> list[Reading]:
     again = f"avoid ({begun}) then within {time} ({begun})"
     readings = [Reading((again,), "if it may last, and must not begin again in that time")]
     if state.text != begun:
-        each = f"avoid {state.at(ATOM)} then within {time} {state.at(ATOM)}"
-        readings.append(Reading((each,), "if no step with it may follow in that time"))
+        at_each_step = f"avoid {state.at(ATOM)} then within {time} {state.at(ATOM)}"
+        readings.append(Reading((at_each_step,), "if no step with it may follow in that time"))
     if ended != begun:
         clause = f"keep {ended} implies always for {time} {state.negated().at(ATOM)}"
         readings.append(Reading((clause,), "if the time counts from its end"))

@@ -35,8 +35,8 @@ _WHERE: Final = '; "How do I say…?" in docs/guides/phrases.md lists what peopl
 def with_unknown_word(failure: ParseFailure, error: Diagnostic, helped: Diagnostic, rule: Rule | None) -> Diagnostic:
     """Return the error for a clause, with a help that names a word which the language does not know.
 
-    ``error`` is what ``rule`` returned, or what is said where no rule knows the mistake. ``helped`` is the error
-    after its sentence was read. It stays as it is if it has a fix, if its help says more than that of such a rule,
+    ``error`` is the error of ``rule``, or the error for mistakes that no rule knows. ``helped`` is the same error
+    after the sentence has been read. It stays as it is if it has a fix, if its help says more than that of such a rule,
     if it has a name of the file, or if there is no such word.
     """
     is_general = rule is None or rule in _GENERAL or (rule is unknown_keyword and failure.tokens[0].text in CONDITIONS)

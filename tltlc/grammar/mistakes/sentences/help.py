@@ -88,23 +88,19 @@ def _with_reading(
         return known
     if not words or words.word(0) == "require":
         return known
-    found = sentence(words)
-    if not found.readings and not found.limit:
-        found = sentence(with_names(words))
-    is_goal = bool(found.readings) and all(reading.clauses[0].startswith(_GOALS) for reading in found.readings)
-    if is_imperative(words) and words.word(0) not in KEYWORDS and not is_goal and not found.limit:
+    read = sentence(words)
+    if not read.readings and not read.limit:
+        read = sentence(with_names(words))
+    is_goal = bool(read.readings) and all(reading.clauses[0].startswith(_GOALS) for reading in read.readings)
+    if is_imperative(words) and words.word(0) not in KEYWORDS and not is_goal and not read.limit:
         return known
-    if (
-        is_whole
-        and not is_english
-        and (len(found.readings) != 1 or _is_same(found.readings[0], failure, known.fixes[0]))
-    ):
+    if is_whole and not is_english and (len(read.readings) != 1 or _is_same(read.readings[0], failure, known.fixes[0])):
         return known
-    if found.readings and " ".join(found.readings[0].clauses) != words.text:
-        return _with_readings(failure, known, found.readings)
-    if found.limit and not found.readings:
-        return replace(known, help=found.limit, fixes=())
-    return known if is_whole or found.readings else _with_forms(failure, known, words)
+    if read.readings and " ".join(read.readings[0].clauses) != words.text:
+        return _with_readings(failure, known, read.readings)
+    if read.limit and not read.readings:
+        return replace(known, help=read.limit, fixes=())
+    return known if is_whole or read.readings else _with_forms(failure, known, words)
 
 
 def _with_forms(failure: ParseFailure, diagnostic: Diagnostic, words: Words) -> Diagnostic:
@@ -112,9 +108,9 @@ def _with_forms(failure: ParseFailure, diagnostic: Diagnostic, words: Words) -> 
     is_general = not diagnostic.fixes and diagnostic.code in ("TLT0101", "TLT0107")
     if not is_general or failure.clock_varies or _is_particular(failure, diagnostic.help):
         return diagnostic
-    found = sentence_forms(words) or sentence_forms(with_names(words))
-    listed = "".join(f"\n`{form.clause}`: {form.says}" for form in found)
-    return replace(diagnostic, help=f"write one of these, if it says what you mean:{listed}") if found else diagnostic
+    offered = sentence_forms(words) or sentence_forms(with_names(words))
+    listed = "".join(f"\n`{form.clause}`: {form.says}" for form in offered)
+    return replace(diagnostic, help=f"write one of these, if it says what you mean:{listed}") if offered else diagnostic
 
 
 def _is_particular(failure: ParseFailure, help_: str | None) -> bool:
