@@ -5,7 +5,9 @@ from __future__ import annotations
 import multiprocessing
 import os
 import signal
+import sys
 import threading
+import time
 
 
 def end_with_parent() -> None:
@@ -13,12 +15,13 @@ def end_with_parent() -> None:
     threading.Thread(target=_end_after_parent, daemon=True).start()
 
 
-def terminate_with_input() -> None:
-    """Send SIGTERM to this process when its standard input ends.
+def terminate_with_input(patience_s: float) -> None:
+    """Send SIGTERM to this process when its standard input ends, and kill it ``patience_s`` seconds later.
 
-    The parent must hold the other end of standard input. On Windows, the process ends at once.
+    The parent must hold the other end of standard input. If this process leads a process group, the
+    whole group is killed. On Windows, the process ends at once.
     """
-    threading.Thread(target=_terminate_after_input, daemon=True).start()
+    threading.Thread(target=_terminate_after_input, args=(patience_s,), daemon=True).start()
 
 
 def _end_after_parent() -> None:
@@ -28,7 +31,12 @@ def _end_after_parent() -> None:
         os._exit(0)
 
 
-def _terminate_after_input() -> None:
+def _terminate_after_input(patience_s: float) -> None:
     while os.read(0, 1 << 16):
         pass
     os.kill(os.getpid(), signal.SIGTERM)
+    if sys.platform != "win32":
+        # Python loses no signal, but a system call that begins just after one blocks before Python handles it.
+        time.sleep(patience_s)
+        kill = os.killpg if os.getpgrp() == os.getpid() else os.kill
+        kill(os.getpid(), signal.SIGKILL)

@@ -33,13 +33,13 @@ _PROGRAM: Final = """\
 import sys
 sys.path[:] = {path!r}
 from tltlc.io.parent_process import terminate_with_input
-terminate_with_input()
+terminate_with_input({patience_s!r})
 from tltlc.interfaces.cli.main import main
 main()
 """
 
 _PATIENCE_S: Final = 20.0
-"""Seconds that the command may take to keep its results and end its own processes after a call is cancelled."""
+"""Seconds that the command may take to keep its results and end its own processes after a call is cancelled or the server ends."""
 
 _FOUND: Final = (0, 1)
 """The exit statuses with which the command has a report."""
@@ -61,7 +61,7 @@ async def run(arguments: Mapping[str, Any], report: Report) -> Answer:
         raise WrongUseError("give `suite`, a TOML file, or `spec` with `baseline` and `now` for recorded sessions")
     with TemporaryDirectory() as folder:
         file = Path(folder, "report.json")
-        program = _PROGRAM.format(path=sys.path)
+        program = _PROGRAM.format(path=sys.path, patience_s=_PATIENCE_S)
         words = [sys.executable, "-c", program, "regress", f"--json={file}", *command_words(arguments)]
         status, output, messages = await _run_command(words, report)
         if status == _WRONG_USE:
