@@ -108,12 +108,9 @@ def test_a_count_of_two_within_a_time_has_a_clause() -> None:
         ("keep hit since alarm <= 9", "alarm"),
     ],
 )
-def test_the_game_counts_since_an_event(clause: str, event: str) -> None:
+def test_a_count_since_an_event_has_a_function(clause: str, event: str) -> None:
     help_ = error_of(clause).help or ""
-    assert help_.endswith(
-        f"`times(hit)` counts from the first step on: let the game count since `{event}`, and supply the number as a "
-        "signal"
-    )
+    assert help_.endswith(f"`times_since(hit, {event})` counts from the last step with `{event}` on")
 
 
 def test_a_bool_that_is_compared_may_be_counted() -> None:

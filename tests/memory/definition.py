@@ -14,7 +14,7 @@ from itertools import pairwise
 from math import ceil, exp, inf, sqrt, tanh
 from typing import Any, Final
 
-from tests.memory.names import MEMORY, NOWHERE, Names, Scope
+from tests.memory.names import COUNTS, MEMORY, NOWHERE, TIMES, WITH_EVENT, Names, Scope
 from tltlc.core.source import SourceFile
 from tltlc.grammar import tree
 from tltlc.grammar.module import Module
@@ -211,7 +211,7 @@ class Definition(Names):
             side, (low, high) = sides[this]
             if high == inf:
                 most, kind = max(0.0, sides[other][1][1]), self._open(side, scope)
-                sides[this] = side, (low, self._maximum(Fraction(repr(2 * most)) + (kind == "times"), kind))
+                sides[this] = side, (low, self._maximum(Fraction(repr(2 * most)) + (kind in COUNTS), kind))
         (left, (left_low, left_high)), (right, (right_low, right_high)) = sides
         a, b = min(self.number(left, i, scope), left_high), min(self.number(right, i, scope), right_high)
         if expr.op in ("==", "!="):
@@ -268,9 +268,18 @@ class Definition(Names):
             return self.number(of, 0, scope)
         if name in ("highest", "lowest"):
             return (max if name == "highest" else min)(self.number(of, j, scope) for j in so_far)
+        last = 0
+        if name in WITH_EVENT:
+            last = max((j for j in so_far if self.holds(parts[1], j, scope, len(self.trace))), default=0)
+        if name == "value_at":
+            return self.number(of, last, scope)
         truth = [self.holds(of, j, scope, len(self.trace)) for j in so_far]
-        if name == "times":
-            found: float = truth[0] + sum(now and not before for before, now in pairwise(truth))
+        stretch = [now and before for before, now in pairwise(truth)]
+        begins = [truth[0], *(now and not before for before, now in pairwise(truth))]
+        if name in COUNTS:
+            found: float = sum(begins[last:])
+        elif name == "total_time":
+            found = self._seconds(sum(stretch))
         elif name == "time_since":
             found = self._seconds(i - max(j for j in so_far if truth[j])) if any(truth) else inf
         else:
@@ -321,7 +330,7 @@ class Definition(Names):
             return self.number(declared.interval.low, 0), self.number(declared.interval.high, 0)
         assert isinstance(expr, CallExpr)
         parts = [argument.value for argument in expr.arguments]
-        if expr.name in ("times", "time_since", "time_holding"):
+        if expr.name in (*COUNTS, *TIMES):
             return 0.0, self._written_maximum(expr.name, parts, scope)
         if expr.name in MEMORY:
             return self._range(parts[0], scope)
@@ -339,9 +348,9 @@ class Definition(Names):
         return expr.name
 
     def _written_maximum(self, name: str, parts: list[Expr], scope: Scope) -> float:
-        if len(parts) == 1:
+        if len(parts) == 1 + (name in WITH_EVENT):
             return inf
-        limit = parts[1]
+        limit = parts[-1]
         while isinstance(limit, GroupExpr):
             limit = limit.inner
         assert isinstance(limit, NumberExpr)
@@ -349,7 +358,7 @@ class Definition(Names):
 
     def _maximum(self, value: Fraction, name: str) -> float:
         """Return a maximum, rounded up: to a whole count, or to a time of at least one step."""
-        if name == "times":
+        if name in COUNTS:
             return float(max(1, ceil(value)))
         assert self._period is not None, "a clock"
         return self._seconds(max(1, ceil(value / self._period)))

@@ -9,7 +9,10 @@ from tltlc.grammar import tree
 from tltlc.grammar.module import Module
 from tltlc.grammar.tree import CallExpr, Expr, GroupExpr, NameExpr, Quantified
 
-MEMORY: Final = ("times", "time_since", "time_holding", "previous", "initial", "highest", "lowest")
+COUNTS: Final = ("times", "times_since")
+TIMES: Final = ("time_since", "time_holding", "total_time")
+WITH_EVENT: Final = ("times_since", "value_at")
+MEMORY: Final = (*COUNTS, *TIMES, "previous", "initial", "highest", "lowest", "value_at")
 """The functions of the trace so far."""
 
 

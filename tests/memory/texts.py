@@ -78,7 +78,7 @@ class Texts:
         """Return a comparison of two numbers; it may be always or never true, and so in error."""
         random = self._random
         op = random.choice(("<", "<=", ">", ">="))
-        kind = random.randrange(6)
+        kind = random.randrange(7)
         inner = self.past(depth - 1)
         if kind == 0:
             maximum = f", {random.randint(1, 5)}" if random.random() < 0.3 else ""
@@ -86,8 +86,11 @@ class Texts:
                 other = random.choice(("0", "1", "2", "3", f"times({self.past(depth - 1)}, 3)"))
                 return f"times({inner}{maximum}) {random.choice(('==', '!='))} {other}"
             return f"times({inner}{maximum}) {op} {random.choice(('1', '2', '3', '1.5', 'k', 'hp', '0'))}"
+        if kind == 6:
+            maximum = f", {random.randint(1, 5)}" if random.random() < 0.3 else ""
+            return f"times_since({inner}, {self.past(depth - 1)}{maximum}) {op} {random.choice(('1', '2', '3', 'k'))}"
         if kind < 3:
-            function = ("time_since", "time_holding")[kind - 1]
+            function = random.choice(("time_since", "total_time")) if kind == 1 else "time_holding"
             maximum = f", {self._time()}" if random.random() < 0.3 else ""
             return f"{function}({inner}{maximum}) {op} {self._time()}"
         if kind == 3:
@@ -132,6 +135,8 @@ class Texts:
         if kind == 3:
             inner = self._plain(depth - 1)
             return random.choice((f"abs({inner})", f"min({inner}, hp)", f"-({inner})", f"max(x, {inner}) / 2"))
+        if random.random() < 0.2:
+            return f"value_at({self._plain(depth - 1)}, {self.past(depth - 1)})"
         return f"{random.choice(('previous', 'initial', 'highest', 'lowest'))}({self._plain(depth - 1)})"
 
 

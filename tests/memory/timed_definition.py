@@ -12,7 +12,7 @@ from itertools import accumulate
 from math import inf
 
 from tests.memory.definition import TINY, Definition, exact
-from tests.memory.names import NOWHERE, Scope
+from tests.memory.names import COUNTS, NOWHERE, TIMES, Scope
 from tltlc.grammar import tree
 from tltlc.grammar.module import Module
 from tltlc.grammar.tree import BinaryExpr, Expr, TemporalInterval, Unary
@@ -87,18 +87,20 @@ class TimedDefinition(Definition):
         return TINY if holds and margin == 0 else margin
 
     def _recalled(self, name: str, parts: list[Expr], i: int, scope: Scope) -> float:
-        if name not in ("time_since", "time_holding"):
+        if name not in TIMES:
             return super()._recalled(name, parts, i, scope)
         truth = [self.robustness(parts[0], j, scope) > 0 for j in range(i + 1)]
         if name == "time_since":
             j = max((j for j in range(i + 1) if truth[j]), default=None)
             time_s = inf if j is None else self._time_s(j, i)
+        elif name == "total_time":
+            time_s = sum(self._time_s(j - 1, j) for j in range(1, i + 1) if truth[j - 1] and truth[j])
         else:
             time_s = self._time_s(min((j for j in range(i + 1) if all(truth[j:])), default=i), i)
         return min(time_s, self._written_maximum(name, parts, scope))
 
     def _maximum(self, value: Fraction, name: str) -> float:
-        return super()._maximum(value, name) if name == "times" else float(value)
+        return super()._maximum(value, name) if name in COUNTS else float(value)
 
 
 class EndlessDefinition(TimedDefinition):

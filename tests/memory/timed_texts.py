@@ -44,6 +44,8 @@ FORMS: Final = {
     "a window": "keep once within {s} {p} implies {q}",
     "a window of a rule": "keep historically for {s} {p} implies {q}",
     "a time": "keep time_since({p}) <= {s} implies time_holding({q}) < {t}",
+    "a count since an event": "keep times_since({p}, {q}) <= 2",
+    "a time in all": "avoid total_time({p}) > {s}",
     "a time that is reached": "reach time_holding({p}) >= {s} and time_since({q}, 20 s) > {t}",
 }
 """For each form with a timer, a clause: ``s`` and ``t`` are times, p, q and r about one sample, f about the future."""
@@ -109,7 +111,7 @@ class TimedTexts:
         if kind == 8:
             return f"(historically for {self.time()} {inner})"
         if kind == 9:
-            function = random.choice(("time_since", "time_holding"))
+            function = random.choice(("time_since", "time_holding", "total_time"))
             maximum = random.choice(("", ", 10 s"))
             return f"({function}({inner}{maximum}) {random.choice(('<', '<=', '>', '>='))} {self.time()})"
         if kind == 10:

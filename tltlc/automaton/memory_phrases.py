@@ -15,6 +15,7 @@ from tltlc.automaton.remembered_formulas import (
     Answer,
     broken_rule,
     counted,
+    counted_since,
     goal_in_time,
     kept_rules,
     listed,
@@ -229,7 +230,7 @@ class Speaker:
             fails = turn and f"{turn[0]} does not {turn[1]}"
             return None if operand is None else Phrase(phrase(self.spoken(operand)), fails)
         if register.kind in VALUES:
-            return value_phrase(item.base, register)
+            return value_phrase(item.base, register, self.event_text(register))
         if len(names_read(item)) > 1:
             return None
         if register.kind in ("once", "historically", "since", "previously"):
@@ -241,9 +242,11 @@ class Speaker:
             if item.base.left != register.name:
                 return None
             words, number = self.object_text(operand), item.base.right
+            since = counted_since(register)
+            begin = "" if since is None else f" since {self.noun_text(since)}"
             holds, fails = (
-                count_text(words, operator, number)
-                if register.kind == "times"
+                f"{count_text(words, operator, number)}{begin}"
+                if register.kind in ("times", "times_since")
                 else time_text(words, register, operator, number)
                 for operator in (item.base.operator, item.base.opposite_operator)
             )
@@ -340,6 +343,16 @@ class Speaker:
         return (
             self.object_text(state) if turn is None else f"the {'start' if turn[1] == 'begin' else 'end'} of {turn[0]}"
         )
+
+    def event_text(self, register: Register) -> str:
+        """Return when a register of ``value_at(x, q)`` took its value: "alarm last held"; empty for other registers."""
+        event = counted_since(register) if register.kind == "value_at" else None
+        if event is None:
+            return ""
+        turn = self._turn(event)
+        if turn is not None:
+            return f"{turn[0]} last {'began' if turn[1] == 'begin' else 'ended'}"
+        return f"{self.object_text(event)} last held"
 
     def _turn(self, state: Formula) -> tuple[str, str] | None:
         """Return what begins or ends in a state, and "begin" or "end"; None for other states."""

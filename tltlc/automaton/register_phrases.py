@@ -7,7 +7,14 @@ from typing import Final
 
 from tltlc.automaton.fspa import Fspa
 from tltlc.automaton.memory_phrases import Speaker
-from tltlc.automaton.remembered_formulas import counted, goal_in_time, past_operands, remembered, waited_for
+from tltlc.automaton.remembered_formulas import (
+    counted,
+    counted_since,
+    goal_in_time,
+    past_operands,
+    remembered,
+    waited_for,
+)
 from tltlc.automaton.value_phrases import VALUES, value_words
 from tltlc.expression.tree import Before
 from tltlc.logic.formula import TRUE, Formula
@@ -19,8 +26,10 @@ _TEXTS: Final[Mapping[RegisterKind, str]] = {
     "since": "whether {0} has held since {1}",
     "previously": "whether {0} held at the step before",
     "times": "how often {0} has begun",
+    "times_since": "how often {0} has begun since {1}",
     "time_since": "the time since {0}",
     "time_holding": "how long {0} has held",
+    "total_time": "how long {0} has held in all",
     "run": "how long {0} had held at the step before",
     "age": "the time since {0} at an earlier step",
     "waiting": "how long {1} has been due after {0}",
@@ -47,7 +56,7 @@ def register_phrases(fspa: Fspa) -> dict[str, str]:
 
 def _phrase(register: Register, registers: Mapping[str, Register], speaker: Speaker) -> str | None:
     if register.kind in VALUES:
-        return value_words(register)
+        return value_words(register, speaker.event_text(register))
     text = _TEXTS.get(register.kind)
     answer = waited_for(register)
     if answer is not None and answer.request is TRUE:
@@ -61,6 +70,8 @@ def _phrase(register: Register, registers: Mapping[str, Register], speaker: Spea
             return None
         name = speaker.noun_text if register.kind in ("time_since", "age") else speaker.object_text
         words = [name(formula) for formula in formulas]
+        if (event := counted_since(register)) is not None:
+            words.append(speaker.noun_text(event))
     return None if text is None else text.format(*words)
 
 

@@ -24,8 +24,9 @@ VALUES: Final = {
     "initial": "the initial {0}",
     "highest": "the highest {0} so far",
     "lowest": "the lowest {0} so far",
+    "value_at": "the {0} when {1}",
 }
-"""What is said of a register, by its kind; the number stands for the value that it remembers."""
+"""What is said of a register, by its kind; 0 stands for the value that it remembers, and 1 for when."""
 
 
 class Phrase(NamedTuple):
@@ -35,11 +36,14 @@ class Phrase(NamedTuple):
     fails: str | None = None
 
 
-def value_phrase(name: str, register: Register) -> Phrase | None:
-    """Return the phrase of a comparison with ``previous(x)``, ``initial(x)``, ``highest(x)`` or ``lowest(x)``."""
+def value_phrase(name: str, register: Register, event: str) -> Phrase | None:
+    """Return the phrase of a comparison with ``previous(x)``, ``initial(x)``, ``highest(x)``, ``value_at(x, q)``, ….
+
+    ``event`` says when q last held; it is empty for the other functions.
+    """
     if not isinstance(name, ComparisonName) or name.operator not in _MIRRORED:
         return None
-    words = value_words(register)
+    words = value_words(register, event)
     if name.left == register.name and not _is_number(name.right):
         left, operator, right = name.right, _MIRRORED[name.operator], words
     elif name.left == register.name:
@@ -65,9 +69,14 @@ def was_phrase(state: Formula, atoms: Mapping[str, Atom]) -> Phrase | None:
     return Phrase(was, was_not) if test is state else Phrase(was_not, was)
 
 
-def value_words(register: Register) -> str:
-    """Return what a register whose kind is in ``VALUES`` remembers: "the previous coins"."""
-    return VALUES[register.kind].format(", ".join(split_name(register.name)[1]))
+def value_words(register: Register, event: str) -> str:
+    """Return what a register whose kind is in ``VALUES`` remembers: "the previous coins".
+
+    ``event`` says when it was taken: "dash last began"; it is empty if the kind says so.
+    """
+    arguments = split_name(register.name)[1]
+    value = ", ".join(arguments[:-1] if event else arguments)
+    return VALUES[register.kind].format(value, event)
 
 
 def count_text(words: str, operator: str, number: str) -> str:
@@ -80,8 +89,13 @@ def count_text(words: str, operator: str, number: str) -> str:
 
 
 def time_text(words: str, register: Register, operator: str, number: str) -> str:
-    """Return a comparison of ``time_since(p)`` or ``time_holding(p)`` with a number in words; ``words`` are p."""
+    """Return a comparison of ``time_since(p)``, ``time_holding(p)`` or ``total_time(p)`` with a number in words.
+
+    ``words`` are p.
+    """
     length = f"{_COMPARED[operator]} {number} s"
+    if register.kind == "total_time":
+        return f"{words} for {length} in all"
     return f"{length} after {words}" if register.kind == "time_since" else f"{words} for {length}"
 
 

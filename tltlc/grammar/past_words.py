@@ -29,6 +29,10 @@ FUNCTIONS: Final = {
     "times": PastWord(
         ("times(p)", "times(p, MAXIMUM)"), "How often p has begun to hold: a count, which stops at its maximum."
     ),
+    "times_since": PastWord(
+        ("times_since(p, q)", "times_since(p, q, MAXIMUM)"),
+        "How often p has begun to hold since the last sample with q, which counts, too, or since the first sample.",
+    ),
     "time_since": PastWord(
         ("time_since(p)", "time_since(p, MAXIMUM)"),
         "The time since p last held, in s: 0 where it holds, the maximum if it never has.",
@@ -37,12 +41,19 @@ FUNCTIONS: Final = {
         ("time_holding(p)", "time_holding(p, MAXIMUM)"),
         "The time since p began to hold, in s, up to a maximum: 0 where it begins, and where it does not hold.",
     ),
+    "total_time": PastWord(
+        ("total_time(p)", "total_time(p, MAXIMUM)"),
+        "The time for which p has held in all, in s, up to a maximum: the sum of `time_holding(p)` of each stretch.",
+    ),
     "previous": PastWord(
         ("previous(x)",), "The value of x at the sample before; at the first sample, its value there."
     ),
     "initial": PastWord(("initial(x)",), "The value of x at the first sample."),
     "highest": PastWord(("highest(x)",), "The greatest value of x so far."),
     "lowest": PastWord(("lowest(x)",), "The least value of x so far."),
+    "value_at": PastWord(
+        ("value_at(x, q)",), "The value of x at the last sample with q; before the first one, its value at the start."
+    ),
 }
 """The functions by their names, which are not reserved."""
 

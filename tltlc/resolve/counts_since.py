@@ -1,10 +1,11 @@
-"""Refuse a count since an event, as in ``times(p) since q <= 3``: counts begin at the first step."""
+"""Refuse ``times(p) since q``, and offer ``times_since(p, q)``, which counts since an event."""
 
 from __future__ import annotations
 
 from typing import Final, TypeGuard
 
 from tltlc.core.source import Span
+from tltlc.diagnostics.diagnostic import Fix, replacement_fix
 from tltlc.grammar.mistakes.compared_tests import COUNT_SINCE
 from tltlc.grammar.tree import BinaryExpr, CallExpr, Expr, GroupExpr, NumberExpr, Unary
 from tltlc.resolve.kinds import kind_of
@@ -17,8 +18,9 @@ _ORDERS: Final = ("<", "<=", ">", ">=", "==", "!=")
 def check_no_count(expr: BinaryExpr, env: Env) -> None:
     """Raise ResolutionError (TLT0301) if p is a count in ``p since q``, as in ``times(p) since q <= 3``."""
     if _is_count(expr.left, env):
-        advice = count_since_help(expr, env)
-        raise problem("TLT0301", "expected a formula, found a number", env.scope.source, expr.left.span, advice=advice)
+        advice, title = count_since_help(expr, env), "expected a formula, found a number"
+        fixes = (_fix(expr, expr, env),)
+        raise problem("TLT0301", title, env.scope.source, expr.left.span, advice=advice, fixes=fixes)
 
 
 def check_not_compared(expr: BinaryExpr, env: Env) -> None:
@@ -33,14 +35,29 @@ def check_not_compared(expr: BinaryExpr, env: Env) -> None:
 
 def count_since_help(expr: BinaryExpr, env: Env) -> str:
     """Return the help for ``times(p) since q``, or for ``p since q`` where p is to be counted."""
-    counted = " ".join(env.scope.source.slice(expr.left.span).split())
-    count = counted if _is_count(expr.left, env) else f"times({counted})"
-    return COUNT_SINCE.format(count=count, event=_event(expr, env))
+    return COUNT_SINCE.format(counted=_counted(expr, env), event=_event(expr, env))
 
 
 def is_count_since(expr: Expr, env: Env) -> TypeGuard[BinaryExpr]:
     """Whether an expression is ``times(p) since q``."""
     return isinstance(expr, BinaryExpr) and expr.op == "since" and _is_count(expr.left, env)
+
+
+def _fix(expr: BinaryExpr, replaced: BinaryExpr, env: Env) -> Fix:
+    """Return the fix that writes ``times_since(p, q)`` for an expression, which is ``times(p) since q`` so far."""
+    text = f"times_since({_counted(expr, env)}, {_event(expr, env)})"
+    end = _comparison(expr.right)
+    span = Span(replaced.span.start, end.left.span.end if end else replaced.span.end)
+    return replacement_fix(env.scope.source, span, text)
+
+
+def _counted(expr: BinaryExpr, env: Env) -> str:
+    """Return the text of p in ``times(p) since q`` and ``p since q``."""
+    left: Expr = expr.left
+    while isinstance(left, GroupExpr):
+        left = left.inner
+    counted = left.arguments[0].value if isinstance(left, CallExpr) and _is_count(left, env) else left
+    return " ".join(env.scope.source.slice(counted.span).split())
 
 
 def _event(expr: BinaryExpr, env: Env) -> str:

@@ -63,8 +63,8 @@ def lookup(use: NameExpr | CallExpr, env: Env, kinds: tuple[BindingKind, ...], n
         )
     title, source = f"no {noun} `{use.name}` here", env.scope.source
     if use.name in MEMORY_FUNCTIONS and isinstance(use, NameExpr):
-        argument = "p" if use.name in ("times", "time_since", "time_holding") else "x"
-        raise problem("TLT0201", title, source, span, advice=f"for the function, write `{use.name}({argument})`")
+        form = past_words.FUNCTIONS[use.name].forms[0]
+        raise problem("TLT0201", title, source, span, advice=f"for the function, write `{form}`")
     if use.name == "time" and source.text[span.end :].lstrip().startswith("since "):
         advice = "`time_since` is one word: write it as in `time_since(p) < 5 s`"
         raise problem("TLT0201", title, source, span, advice=advice)

@@ -13,7 +13,8 @@ from typing import Final
 from tltlc.core.record import replace
 from tltlc.core.source import Span
 from tltlc.diagnostics.diagnostic import Label
-from tltlc.expression.tree import Before, Condition, Expression, Op, SignalValue, depth
+from tltlc.expression.tree import Before, Condition, Expression, Op, SignalValue, When, depth
+from tltlc.grammar.past_words import FUNCTIONS
 from tltlc.grammar.tree import BinaryExpr, CallExpr, Expr, Unary
 from tltlc.io.limits import ARITHMETIC
 from tltlc.logic import formula as logic
@@ -33,7 +34,9 @@ from tltlc.resolve.values import CLOSED, Env, Quantity, Recall, number_text
 PAST: Final = ("once", "historically", "previously", "begins", "ends")
 """The operators with one operand that speak of the trace so far."""
 
-_OF_FORMULAS: Final = ("times", "time_since", "time_holding")
+_OF_FORMULAS: Final = ("times", "times_since", "time_since", "time_holding", "total_time")
+_WITH_EVENT: Final = ("times_since", "value_at")
+"""The functions whose second argument is a formula: the event since which, or the state at which, they ask."""
 _MOST_NESTED: Final = 16
 """The most functions of the past that may stand inside each other."""
 _LONGEST: Final = 10_000
@@ -197,10 +200,16 @@ def recall(expr: CallExpr, env: Env, level: int) -> Quantity:
     speaks of the future, TLT0303 a maximum that is not above 0. ``level`` is the number of operators
     around the call.
     """
-    most = 2 if expr.name in _OF_FORMULAS else 1
-    if not 1 <= len(expr.arguments) <= most or any(argument.name for argument in expr.arguments):
-        form = f"`{expr.name}(p)` or `{expr.name}(p, MAXIMUM)`" if most == 2 else f"`{expr.name}(x)`"
-        title = f"`{expr.name}` takes one {'formula' if most == 2 else 'number'}"
+    is_of_formula = expr.name in _OF_FORMULAS
+    least = 2 if expr.name in _WITH_EVENT else 1
+    most = least + is_of_formula
+    if not least <= len(expr.arguments) <= most or any(argument.name for argument in expr.arguments):
+        form = " or ".join(f"`{form}`" for form in FUNCTIONS[expr.name].forms)
+        first = "formula" if is_of_formula else "number"
+        if expr.name not in _WITH_EVENT:
+            title = f"`{expr.name}` takes one {first}"
+        else:
+            title = f"`{expr.name}` takes {'two formulas' if is_of_formula else 'a number and a formula'}"
         raise problem("TLT0210", title, env.scope.source, expr.span, advice=f"write {form}")
     if env.context.recalls >= _MOST_NESTED:
         title = f"functions of the past stand more than {_MOST_NESTED} deep inside each other"
@@ -209,19 +218,17 @@ def recall(expr: CallExpr, env: Env, level: int) -> Quantity:
     outside = env.context.levels
     env.context.recalls, env.context.levels = env.context.recalls + 1, level
     try:
-        return _of_formula(expr, env) if most == 2 else _of_number(expr, env, level)
+        return _of_formula(expr, env) if is_of_formula else _of_number(expr, env, level)
     finally:
         env.context.recalls, env.context.levels = env.context.recalls - 1, outside
 
 
 def _of_formula(expr: CallExpr, env: Env) -> Quantity:
-    from tltlc.resolve.formulas import formula
-
-    argument = expr.arguments[0].value
-    operand = formula(argument, env)
-    _check_operand(operand, argument, env)
-    name = f"{expr.name}({ascii_text(operand)})"
-    is_time, varies = expr.name != "times", env.context.clock_varies
+    operand = _operand(expr.arguments[0].value, env)
+    event = _operand(expr.arguments[1].value, env) if expr.name in _WITH_EVENT else None
+    texts = [ascii_text(operand)] if event is None else [ascii_text(operand), _event_text(expr, event, env)]
+    name = f"{expr.name}({', '.join(texts)})"
+    is_time, varies = event is None and expr.name != "times", env.context.clock_varies
     unit = _seconds_per_step(expr, env) if is_time else Fraction(1)
     if not env.symbolic:
         if expr.name == "time_since":
@@ -229,20 +236,22 @@ def _of_formula(expr: CallExpr, env: Env) -> Quantity:
         else:
             kept, begun = _kept(operand, expr, env), _truth(operand, expr, env)
             step, step_unit = registers.step_length(varies), "s" if varies else "steps"
-            draft = (
-                registers.time_holding(name, begun, kept, step, step_unit)
-                if is_time
-                else registers.times(name, begun, kept)
-            )
+            if event is not None:
+                draft = registers.times_since(name, begun, kept, _truth(event, expr, env))
+            elif is_time:
+                timer = registers.time_holding if expr.name == "time_holding" else registers.total_time
+                draft = timer(name, begun, kept, step, step_unit)
+            else:
+                draft = registers.times(name, begun, kept)
             _register(draft, expr, env)
     dimension = units.TYPES["time"] if is_time else units.PLAIN
     read = Recall(name, unit, is_count=not is_time, is_whole=not (is_time and varies))
     open_value = Quantity(SignalValue(name), dimension, 0.0, inf, name, is_whole=not is_time, recall=read)
     if env.symbolic:
         env.context.signals.setdefault(name, Signal(name, "number", 0.0, None))
-    if len(expr.arguments) == 1:
+    if len(expr.arguments) == (1 if event is None else 2):
         return open_value
-    limit = expr.arguments[1].value
+    limit = expr.arguments[-1].value
     maximum = number(limit, dimension, env, f"the maximum of `{expr.name}`")
     if maximum <= 0 or isinf(maximum) or (not is_time and maximum != int(maximum)):
         wanted = "a time above 0, e.g. `60 s`" if is_time else "a whole number above 0"
@@ -250,6 +259,25 @@ def _of_formula(expr: CallExpr, env: Env) -> Quantity:
         raise problem("TLT0303", title, env.scope.source, limit.span, advice=f"write {wanted}")
     text = f"{name[:-1]}, {number_text(maximum)})"
     return up_to(open_value, maximum, limit, env, text, Label(env.scope.source, limit.span))
+
+
+def _operand(argument: Expr, env: Env) -> Formula:
+    """Return the formula that an argument is. Raises ResolutionError (TLT0320) if it speaks of the future."""
+    from tltlc.resolve.formulas import formula
+
+    operand = formula(argument, env)
+    _check_operand(operand, argument, env)
+    return operand
+
+
+def _event_text(expr: CallExpr, event: Formula, env: Env) -> str:
+    """Return the text of the second argument of a function: `begins p` stays as it is written."""
+    from tltlc.resolve.formulas import formula
+
+    argument = expr.arguments[1].value
+    if isinstance(argument, Unary) and argument.op in ("begins", "ends"):
+        return f"{argument.op} {operand_text(formula(argument.operand, env))}"
+    return ascii_text(event)
 
 
 def _seconds_per_step(expr: CallExpr, env: Env) -> Fraction:
@@ -275,6 +303,7 @@ def _of_number(expr: CallExpr, env: Env, level: int) -> Quantity:
 
     argument = expr.arguments[0].value
     value = check_closed(quantity(argument, env, level), argument, env)
+    event = _operand(expr.arguments[1].value, env) if expr.name in _WITH_EVENT else None
     if value.is_constant:
         title = f"`{expr.name}` of a constant is the constant"
         advice = f"leave out `{expr.name}`, or name a signal"
@@ -282,8 +311,9 @@ def _of_number(expr: CallExpr, env: Env, level: int) -> Quantity:
     if value.depth > ARITHMETIC.depth:
         return value
     _check_length(len(value.text), argument, env)
-    name = f"{expr.name}({value.text})"
-    call = (expr.name, (value.text,)) if value.is_bool else None
+    texts = (value.text,) if event is None else (value.text, _event_text(expr, event, env))
+    name = f"{expr.name}({', '.join(texts)})"
+    call = (expr.name, texts) if value.is_bool else None
     result = replace(value, expression=SignalValue(name), text=name, binding=CLOSED, depth=1, call=call)
     if env.symbolic:
         env.context.signals.setdefault(name, Signal(name, "number", None, None))
@@ -302,6 +332,8 @@ def _of_number(expr: CallExpr, env: Env, level: int) -> Quantity:
         "highest": Op("max", (before, now)),
         "lowest": Op("min", (before, now)),
     }
+    if event is not None:
+        updates[expr.name] = When(((_truth(event, expr, env), now),), before)
     update = registers.at_first(now, updates[expr.name])
     unit = str(units.si_unit(value.dimension) or "") if value.dimension else ""
     kind = expr.name

@@ -39,6 +39,8 @@ SATURATING: Final[tuple[RegisterKind, ...]] = (
     "times",
     "time_since",
     "time_holding",
+    "times_since",
+    "total_time",
     "samples",
     "elapsed",
     "run",
@@ -108,6 +110,21 @@ def times(name: str, operand: Condition, kept: str) -> RegisterDraft:
     return RegisterDraft(name, "times", "", 0.0, None, 0.0, When(((begins, more),), Before(name)))
 
 
+def times_since(name: str, operand: Condition, kept: str, event: Condition) -> RegisterDraft:
+    """Return the register of ``times_since(p, q)``: how often p has begun since the last sample with q, with this one.
+
+    ``kept`` is the register that keeps the robustness of p, and ``event`` the truth of q. Before the
+    first q, p is counted from the first sample on.
+    """
+    begins = Condition("and", (operand, Condition("not", (holds(Before(kept)),))))
+    cases: tuple[tuple[Condition, Expression], ...] = (
+        (Condition("and", (event, begins)), Const(1.0)),
+        (event, Const(0.0)),
+        (begins, Op("+", (Before(name), Const(1.0)))),
+    )
+    return RegisterDraft(name, "times_since", "", 0.0, None, 0.0, When(cases, Before(name)))
+
+
 def time_since(name: str, operand: Condition, step: Expression, unit: str) -> RegisterDraft:
     """Return the register of ``time_since(p)``: 0 where p holds, else one step more than before."""
     update = When(((operand, Const(0.0)),), Op("+", (Before(name), step)))
@@ -119,6 +136,13 @@ def time_holding(name: str, operand: Condition, kept: str, step: Expression, uni
     both = Condition("and", (operand, holds(Before(kept))))
     update = When(((both, Op("+", (Before(name), step))),), Const(0.0))
     return RegisterDraft(name, "time_holding", unit, 0.0, None, 0.0, update)
+
+
+def total_time(name: str, operand: Condition, kept: str, step: Expression, unit: str) -> RegisterDraft:
+    """Return the register of ``total_time(p)``: the time between all samples with p that follow another one with p."""
+    both = Condition("and", (operand, holds(Before(kept))))
+    update = When(((both, Op("+", (Before(name), step))),), Before(name))
+    return RegisterDraft(name, "total_time", unit, 0.0, None, 0.0, update)
 
 
 def samples() -> RegisterDraft:

@@ -18,7 +18,18 @@ from tltlc.resolve.problem import Log, problem
 BindingKind = Literal["signal", "param", "predicate", "let", "entity", "group"]
 NamedDeclaration = Union[SignalDecl, ParamDecl, PredicateDecl, LetDecl, GroupDecl, NameExpr]
 FUNCTIONS = ("min", "max", "abs", "clamp", "sqrt", "exp", "tanh")
-MEMORY_FUNCTIONS = ("times", "time_since", "time_holding", "previous", "initial", "highest", "lowest")
+MEMORY_FUNCTIONS = (
+    "times",
+    "times_since",
+    "time_since",
+    "time_holding",
+    "total_time",
+    "previous",
+    "initial",
+    "highest",
+    "lowest",
+    "value_at",
+)
 """The functions of the trace so far. A declaration may take the name of one: then the name means the declaration."""
 _MERGED = ("signal", "param", "entity")
 

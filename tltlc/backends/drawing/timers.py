@@ -25,10 +25,13 @@ _KINDS: Final[dict[RegisterKind, str]] = {
     "times": "count",
     "time_since": "time since",
     "time_holding": "time without a break",
+    "times_since": "count since an event",
+    "total_time": "time in all",
     "previous": "value before",
     "initial": "first value",
     "highest": "greatest value",
     "lowest": "least value",
+    "value_at": "value at an event",
     "samples": "count of samples",
     "elapsed": "time since the first sample",
     "run": "time without a break, before this sample",
@@ -36,6 +39,8 @@ _KINDS: Final[dict[RegisterKind, str]] = {
     "waiting": "longest wait",
 }
 """The kinds of registers that the legend shows, in words. The others only serve these."""
+
+_COUNTS: Final = ("times", "times_since")
 
 
 @record
@@ -106,7 +111,9 @@ def _parts(formula: Formula, op: str) -> tuple[Formula, ...]:
 
 def _timer(item: Atom, register: Register, registers: Mapping[str, Register], speaker: Speaker) -> Timer | None:
     if isinstance(item.base, ComparisonName):
-        event = counted(register, registers) if item.base.left == register.name and register.kind != "times" else None
+        event = (
+            counted(register, registers) if item.base.left == register.name and register.kind not in _COUNTS else None
+        )
         return None if event is None else _since(f"{item.base.right} s", register, _say(event, speaker))
     if item.timer is None or not item.arguments or register.kind == "due":
         return None
@@ -122,6 +129,8 @@ def _timer(item: Atom, register: Register, registers: Mapping[str, Register], sp
 
 
 def _since(time: str, register: Register, event: str) -> Timer:
+    if register.kind == "total_time":
+        return Timer(time, f"{event} in all")
     return (
         Timer(time, f"{event} without a break")
         if register.kind in ("time_holding", "run")
@@ -151,7 +160,7 @@ def _name(register: Register, registers: Mapping[str, Register], speaker: Speake
     if answer is not None:
         goal = _say(answer.goal, speaker)
         return goal if answer.request is TRUE else f"{goal} after {_say(answer.request, speaker)}"
-    event = None if register.kind == "times" else counted(register, registers)
+    event = None if register.kind in _COUNTS else counted(register, registers)
     return register.name if event is None else _say(event, speaker)
 
 

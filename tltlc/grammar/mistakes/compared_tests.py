@@ -10,7 +10,8 @@ from tltlc.grammar.mistakes.parse_failure import COMPARISONS, ParseFailure, quot
 from tltlc.grammar.mistakes.rephrasing import operand_end, operand_start, text_of
 
 COUNT_SINCE: Final = (
-    "`{count}` counts from the first step on: let the game count since `{event}`, and supply the number as a signal"
+    "`times({counted})` counts from the first step on; "
+    "`times_since({counted}, {event})` counts from the last step with `{event}` on"
 )
 
 
@@ -30,7 +31,9 @@ def compared_test(failure: ParseFailure) -> Diagnostic | None:
     if counted is not None and tokens[counted].text == "times" and operand_end(tokens, counted) == since:
         if start is None:
             title = "comparisons cannot be chained"
-        help_ = COUNT_SINCE.format(count=text_of(failure, counted, since), event=text_of(failure, since + 1, at))
+        comma = next((index for index in range(counted + 2, since) if tokens[index].text == ","), since - 1)
+        texts = text_of(failure, counted + 2, comma), text_of(failure, since + 1, at)
+        help_ = COUNT_SINCE.format(counted=texts[0], event=texts[1])
     elif start is None:
         return None
     elif tokens[at + 1].type == "NUMBER":

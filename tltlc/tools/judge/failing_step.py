@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from typing import Any, Final
 
 from tltlc.automaton.memory import schedule
+from tltlc.automaton.memory_phrases import Speaker
 from tltlc.automaton.value_phrases import VALUES, value_words
 from tltlc.core.record import record
 from tltlc.expression.tree import AtomValue, SignalValue, nodes
@@ -107,7 +108,12 @@ class FailingStep:
         read = fspa.atoms[atom].expression
         if isinstance(read, SignalValue) and read.name in registers and registers[read.name].kind in _MEMORY:
             return (StepValue(atom_words(fspa, atom, holds=value > 0.0)),)
-        words = {name: value_words(register) for name, register in registers.items() if register.kind in VALUES}
+        speaker = Speaker(fspa)
+        words = {
+            name: value_words(register, speaker.event_text(register))
+            for name, register in registers.items()
+            if register.kind in VALUES
+        }
         signals = {signal.name: signal for signal in fspa.signals}
         found = {node.name for node in nodes(read) if isinstance(node, SignalValue)}
         names = sorted(found, key=lambda name: (name in registers, name))

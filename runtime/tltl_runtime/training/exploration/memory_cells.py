@@ -15,7 +15,17 @@ from tltlc.api import Fspa
 
 _TRUTHS: Final = ("once", "historically", "since", "due")
 """Registers of these kinds count as true or false."""
-_AMOUNTS: Final = ("times", "time_since", "time_holding", "age", "waiting", "highest", "lowest")
+_AMOUNTS: Final = (
+    "times",
+    "times_since",
+    "time_since",
+    "time_holding",
+    "total_time",
+    "age",
+    "waiting",
+    "highest",
+    "lowest",
+)
 """The ranges of registers of these kinds are divided into bins.
 
 Other registers say little that the state, the place or these do not say, and change at each step.

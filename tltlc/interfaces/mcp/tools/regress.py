@@ -39,7 +39,7 @@ main()
 """
 
 _PATIENCE_S: Final = 20.0
-"""Seconds that the command may take to keep its results and end its own processes after a call is cancelled or the server ends."""
+"""Seconds that the command may take to keep its results and end its processes after the call or the server ends."""
 
 _FOUND: Final = (0, 1)
 """The exit statuses with which the command has a report."""
