@@ -68,6 +68,21 @@ def test_the_sides_of_a_comparison_are_measured_in_their_unit(formula: str, expe
     assert measured(formula) == expected
 
 
+@pytest.mark.parametrize(
+    ("value", "gap", "text"),
+    [
+        (0.1 + 0.2, 0.1 + 0.2 - 0.3, "x is 0.30000000000000004 m"),
+        (2.9996, 0.0004, "x is 2.9996 m"),
+        (2.9996, 0.9996, "x is 3 m"),
+        (3.0, 0.0, "x is 3 m"),
+        (1234.0, 0.25, "x is 1234 m"),
+        (1234.25, 0.25, "x is 1234.2 m"),
+    ],
+)
+def test_a_value_beside_its_border_has_enough_digits(value: float, gap: float, text: str) -> None:
+    assert Measure("x", value, gap, "m").text == text
+
+
 @pytest.mark.parametrize("formula", ["hot", "near(exit)", "heat / 2 > 0", "sqrt(cold) > 1", "mode is idle"])
 def test_an_atom_without_measurable_sides_has_no_measure(formula: str) -> None:
     assert measured(formula) is None

@@ -100,8 +100,8 @@ class FailingStep:
         if fspa.atoms[atom].timer is not None:
             return (StepValue(atom_words(fspa, atom)),)
         measured = measure(fspa, atom, self._known)
-        if measured is not None and measured.value is not None:
-            return (StepValue(measured.quantity, f"{short_number(measured.value)} {measured.unit}".rstrip()),)
+        if measured is not None and measured.number is not None:
+            return (StepValue(measured.quantity, measured.number),)
         if AtomValue(fspa.atoms[atom].name) in Flags(fspa, schedule(fspa)):
             return (StepValue(atom_words(fspa, atom), "true" if value > 0.0 else "false"),)
         registers = {register.name: register for register in fspa.registers}

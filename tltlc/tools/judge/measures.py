@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Final
 
 from tltlc.automaton.fspa import Fspa
 from tltlc.core.names import ComparisonName
@@ -11,6 +12,9 @@ from tltlc.expression.evaluate import evaluate
 from tltlc.expression.tree import Const, Expression, Op, ParamValue, SignalValue, nodes
 from tltlc.resolve.spec import Register
 from tltlc.resolve.units import PLAIN, TYPES, Dimension, power, product, si_unit
+
+_MOST_DIGITS: Final = 17
+"""With so many digits, every number differs from every other."""
 
 
 @record
@@ -30,9 +34,21 @@ class Measure:
     @property
     def text(self) -> str | None:
         """The side that varies and its value: ``abs(spin) is 3.12 rad/s``; None if both sides vary."""
+        return None if self.number is None else f"{self.quantity} is {self.number}"
+
+    @property
+    def number(self) -> str | None:
+        """The value of the side that varies, with its unit; None if both sides vary.
+
+        It has so many digits that it is on the same side of the other number as the value is.
+        """
         if self.value is None:
             return None
-        return f"{self.quantity} is {short_number(self.value)} {self.unit}".rstrip()
+        text, digits = short_number(self.value), 3
+        while abs(float(text) - self.value) >= self.gap / 2 > 0 and digits < _MOST_DIGITS:
+            digits += 1
+            text = f"{self.value:.{digits}g}"
+        return f"{text} {self.unit}".rstrip()
 
 
 def measure(fspa: Fspa, atom: int, sample: Mapping[str, float]) -> Measure | None:
