@@ -130,7 +130,22 @@ spec no_memory {
     return ConformanceCase(_compiled("no_memory", text), "Registers without a value.", (*traces, *first), text)
 
 
+def _events_case() -> ConformanceCase:
+    """Return a case with counts, times and values since an event."""
+    text = f"""\
+{_DECLARATIONS}spec since_events {{
+    keep times_since(a, b) <= 3 or total_time(b) > 1 s
+    keep times_since(x > 0.25, begins c, 5) != 4 or y >= value_at(y, begins a)
+    require always eventually (value_at(x + y / 2, b) > x or times_since(d, e and a) == 2)
+}}
+"""
+    fspa, draw = _compiled("since_events", text), Draw(9009)
+    traces = tuple(lively_trace(fspa, draw, length, _POOLS) for length in (20, 30, 40))
+    return ConformanceCase(fspa, "Counts, times and values since an event.", traces, text)
+
+
 CASES: Final[CaseBuilders] = {
     **{f"random_memory_{n}": partial(_random_case, f"random_memory_{n}", 9000 + n) for n in range(1, 9)},
+    "since_events": _events_case,
     "no_memory": _rejected_case,
 }

@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 from tests.tools.lint.helpers import RANGES, block, codes, findings_in
-from tltlc.pipeline import compile_text
 from tltlc.monitor.monitor import Monitor
+from tltlc.pipeline import compile_text
 
 
 @pytest.mark.parametrize(
