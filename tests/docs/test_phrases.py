@@ -85,7 +85,7 @@ ACCEPTED = {
     "`require hidden until near(key)`": (["hidden", "near(key)"], ["hidden", "hidden"]),
     "`require always (alarm implies always not seen)`": (["seen", "alarm"], ["alarm", "seen"]),
     "`require always (alarm implies eventually near(exit))`": (["alarm", "near(exit)"], ["near(exit)", "alarm"]),
-    "`require always (alarm implies next hidden)`": (["alarm", "hidden"], ["alarm", ""]),
+    "`require always (alarm implies weak_next hidden)`": (["alarm", "hidden"], ["alarm", ""]),
     "`require (eventually alarm) implies eventually near(exit)`": (["near(exit)", "alarm"], ["alarm", ""]),
     "`require eventually within 5 s near(exit)`": ([*[""] * 50, "near(exit)"], [*[""] * 51, "near(exit)"]),
 }

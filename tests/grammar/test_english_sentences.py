@@ -609,12 +609,19 @@ def test_one_fix_mends_all_words_of_a_clause_that_can_be_parsed(typed: str, mean
             "`time_holding(fire and spray) > 0.2 s` needs 4",
         ),
         ("!fire U spray", "write `weak_until` for `until` if play may end before `spray`"),
+        ("when fire, spray on the next step", "write `weak_next` for `next` if play may end at a step with `fire`"),
+        ("when fire then X G spray", "write `weak_next` for `next` if play may end at a step with `fire`"),
     ],
 )
 def test_a_help_says_what_its_clauses_count(typed: str, note: str) -> None:
     (error,) = errors(spec(typed))
     assert error.fixes
     assert (error.help or "").endswith(f"\n{note}")
+
+
+def test_a_help_about_more_than_the_next_step_says_nothing_of_the_end() -> None:
+    (error,) = errors(spec("when fire, next eventually spray"))
+    assert error.help == "write `keep fire implies (next eventually spray)`"
 
 
 @pytest.mark.parametrize(

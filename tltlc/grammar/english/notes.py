@@ -1,4 +1,4 @@
-"""Say what suggested clauses ask for where a reader may expect something else: counts, times, and `until`."""
+"""Say what suggested clauses ask for where a reader may expect something else: counts, times, `until` and `next`."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from tltlc.grammar.builder import Builder
 from tltlc.grammar.lexer import tokenize
 from tltlc.grammar.mistakes.declared_names import DeclaredNames
 from tltlc.grammar.tables import load
-from tltlc.grammar.tree import BinaryExpr, CallExpr, Declaration, Expr, NumberExpr, Unary
+from tltlc.grammar.tree import BinaryExpr, CallExpr, Declaration, Expr, GroupExpr, NumberExpr, Unary
 from tltlc.grammar.walk import expressions, parts
 
 _SECONDS: Final = {"ms": 0.001, "s": 1.0, "min": 60.0, "h": 3600.0}
@@ -21,6 +21,8 @@ _BEGINNINGS: Final = (
     "time", "leave", "get", "end", "stop",
 )  # fmt: skip
 """Words about a moment, which a state that lasts has only one of."""
+_AWAITING: Final = ("F", "X", "U", "M", "then", "within")
+"""The operators that ask for something that may come later."""
 _MOST_STEPS: Final = 100
 """With more steps, one more or less is hardly noticed."""
 
@@ -60,10 +62,22 @@ def _notes(expression: Expr, source: SourceFile, step_s: float) -> Iterator[tupl
         elif isinstance(part, BinaryExpr) and part.op == "U":
             end = source.slice(part.right.span)
             yield f"write `weak_until` for `until` if play may end before `{end}`", ("weak_until",)
+        elif isinstance(part, BinaryExpr) and part.op == "implies" and _is_next_state(part.right):
+            condition = source.slice(part.left.span)
+            yield f"write `weak_next` for `next` if play may end at a step with `{condition}`", ("weak_next",)
         elif isinstance(part, BinaryExpr) and part.op in (">", ">=") and _is_held(part.left):
             note = _of_time(part, source, step_s)
             if note:
                 yield note, ("time_holding",)
+
+
+def _is_next_state(answer: Expr) -> bool:
+    """Whether an answer is `next p`, where p asks for nothing at further steps."""
+    while isinstance(answer, GroupExpr):
+        answer = answer.inner
+    if not isinstance(answer, Unary) or answer.op != "X" or answer.bound is not None:
+        return False
+    return not any(isinstance(part, (Unary, BinaryExpr)) and part.op in _AWAITING for part in parts(answer.operand))
 
 
 def _is_held(expression: Expr) -> bool:

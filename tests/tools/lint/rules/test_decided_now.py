@@ -15,12 +15,16 @@ HEAD = "clock {} signal a: bool signal b: bool signal c: bool\nspec s {{ judge a
 AGAIN = (
     "to forbid that it begins again, write `avoid (begins a) {} (begins a)`; to forbid `a` altogether, write `avoid a`"
 )
+BOTH_UNTILS = (
+    "for the steps after it, write `weak_next ({0} weak_until b)` if `b` need not come, "
+    "`weak_next ({0} until b)` if it must"
+)
 CASES = {
     # The clause, what the operator means, and the advice.
-    "keep a implies (not a until b)": ("b", "for the steps after it, write `weak_next (not a until b)`"),
+    "keep a implies (not a until b)": ("b", BOTH_UNTILS.format("not a")),
     "keep a implies not a weak_until b": ("b", "for the steps after it, write `weak_next (not a weak_until b)`"),
-    "keep begins a implies (not a until b)": ("b", "for the steps after it, write `weak_next (not a until b)`"),
-    "keep ends a implies (a until b)": ("b", "for the steps after it, write `weak_next (a until b)`"),
+    "keep begins a implies (not a until b)": ("b", BOTH_UNTILS.format("not a")),
+    "keep ends a implies (a until b)": ("b", BOTH_UNTILS.format("a")),
     "keep a implies (not a since b)": ("b", "for the steps before, write `previously (not a since b)`"),
     "keep a implies (a release b)": ("b", "for the steps after it, write `weak_next (a release b)`"),
     "avoid a and (not a until b)": ("b", "for the steps after it, write `next (not a until b)`"),

@@ -37,4 +37,4 @@ def _finding(name: str, spec: SpecView, *, holds: bool) -> RuleFinding:
     return RuleFinding(f"`{name}` {'always' if holds else 'never'} holds", (label,), help_)
 
 
-RULE = LintRule("TLT0416", "error", check)
+RULE = LintRule("TLT0416", "error", check, supersedes=("TLT0449",))

@@ -70,6 +70,11 @@ def _advice(clause: Clause, decided: DecidedOperator, *, is_forbidden: bool) -> 
             return f"for the steps before, write `previously {text}`"
         return "ask for what must have come at an earlier step"
     if decided.outcome == "operand":
+        if operator.tree.op == "U" and not is_forbidden:
+            first, goal = operator.children()
+            weak = f"({operand_text(first)} weak_until {operand_text(goal)})"
+            strong = f"`weak_next {text}` if it must"
+            return f"for the steps after it, write `weak_next {weak}` if `{goal.text}` need not come, {strong}"
         return f"for the steps after it, write `{'next' if is_forbidden else 'weak_next'} {text}`"
     if decided.outcome == "true":
         # Where `a` asks for another `a`, `next` would forbid it: there is a last one.

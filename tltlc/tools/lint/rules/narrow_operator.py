@@ -108,4 +108,4 @@ def _in_brackets(text: str) -> str:
     return text if text.isidentifier() else f"({text})"
 
 
-RULE = LintRule("TLT0446", "warning", check)
+RULE = LintRule("TLT0446", "warning", check, supersedes=("TLT0448",))

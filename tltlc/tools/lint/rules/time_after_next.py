@@ -55,4 +55,4 @@ def _advice(part: ScopedExpression, outer: Unary, timed: Unary, event: ScopedExp
     return f"to count from the {'event' if event else 'step before'}, leave out `{word}`: then that step counts, too"
 
 
-RULE = LintRule("TLT0439", "warning", check)
+RULE = LintRule("TLT0439", "warning", check, supersedes=("TLT0449",))
