@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from tltlc.grammar.mistakes.sentences.kinds import is_event
+from typing import Final
+
+from tltlc.grammar.mistakes.sentences.kinds import is_bool, is_event
 from tltlc.grammar.mistakes.sentences.states import State, count_of, holding_of
 from tltlc.grammar.mistakes.sentences.vocabulary import (
     COMPARISONS,
@@ -13,7 +15,29 @@ from tltlc.grammar.mistakes.sentences.vocabulary import (
     PROHIBITIONS,
     SUBJECTS,
 )
-from tltlc.grammar.mistakes.sentences.words import Words
+from tltlc.grammar.mistakes.sentences.words import Words, phrases
+
+_OFTEN: Final = ("once", "twice", "thrice")
+_PERIODS: Final = phrases("per", "in each", "in every", "each", "every", "while", "during", "in one", "in a single")
+"""Words before what a count is about: a stretch of play that comes again."""
+_EVENTS: Final = ("when", "whenever", "if", "after")
+
+
+def counts_in_periods(words: Words) -> bool:
+    """Whether a sentence counts while something holds or in each of several periods, or is about so many events."""
+    return _counts(words) and (words.word(0) in _EVENTS or words.find(_PERIODS) is not None)
+
+
+def _counts(words: Words) -> bool:
+    for at, word in enumerate(words):
+        following = words.word(at + 1)
+        if word.text == "times" and following == "(":
+            return True
+        if at and word.text in _OFTEN:
+            return True
+        if words.number(at) and (following in ("times", "time") or (at + 1 < len(words) and is_bool(words, at + 1))):
+            return True
+    return False
 
 
 def bounded_count(words: Words) -> tuple[str, ...] | None:
