@@ -141,6 +141,26 @@ class Changes(Rules):
         operator = sign if isinstance(sign, str) else sign.text
         return None if value is None else comparison(Number(term.text, term), operator, value)
 
+    def not_compared_with_value_at(self, term: Term, sign: str, moment: State) -> State | None:
+        state = self.compared_with_value_at(term, sign, moment)
+        return None if state is None else state.negated()
+
+    def not_compared_with_value(self, left: Number, sign: str, right: Number) -> State | None:
+        state = self.compared(left, sign, right) if "value_at(" in right.text else None
+        return None if state is None else state.negated()
+
+    def more_than_at(self, term: Term, moment: State) -> State | None:
+        return self.compared_with_value_at(term, ">", moment)
+
+    def less_than_at(self, term: Term, moment: State) -> State | None:
+        return self.compared_with_value_at(term, "<", moment)
+
+    def as_at(self, sign: str, term: Term, moment: State) -> State | None:
+        return self.compared_with_value_at(term, sign, moment)
+
+    def as_many_as_at(self, term: Term, moment: State) -> State | None:
+        return self.compared_with_value_at(term, ">=", moment)
+
     def equal_to_value_at(self, term: Term, moment: State) -> State | None:
         return self.compared_with_value_at(term, "==", moment)
 

@@ -23,7 +23,8 @@ _BEGINNINGS: Final = (
 """Words about a moment, which a state that lasts has only one of."""
 _OF_CALLS: Final = {
     "times": "`{call}` counts how often `{0}` begins: steps in a row count once",
-    "times_since": "`{call}` counts how often `{0}` begins; each step with `{1}` begins a new count, in which it counts",
+    "times_since": "`{call}` counts how often `{0}` begins; each step with `{1}` begins a new count, "
+    "in which it counts",
     "total_time": "`{call}` adds up the stretches with `{0}`, each from 0 s at its first step",
     "value_at": "`{call}` is the value at the first step until the first step with `{1}`",
 }
@@ -76,8 +77,9 @@ def _notes(expression: Expr, source: SourceFile, step_s: float) -> Iterator[tupl
 
 def _is_since(expression: Expr) -> TypeGuard[CallExpr]:
     """Whether an expression is a function of an event: `times_since(p, q)`, `value_at(x, q)`."""
-    is_call = isinstance(expression, CallExpr) and expression.name in ("times_since", "value_at")
-    return is_call and len(expression.arguments) > 1
+    if not isinstance(expression, CallExpr):
+        return False
+    return expression.name in ("times_since", "value_at") and len(expression.arguments) > 1
 
 
 def _is_after_event(call: CallExpr, source: SourceFile) -> bool:

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import re
 from math import ceil
 from typing import Final
 
-from tltlc.core.record import record, replace
+from tltlc.core.record import replace
 from tltlc.grammar.english.answers import Asked, is_negative
+from tltlc.grammar.english.differences import Differences, Period
 from tltlc.grammar.english.events import Counted, Event, as_state
-from tltlc.grammar.english.intervals import Intervals, Span
-from tltlc.grammar.english.quantities import MIRRORED, Change, Duration, Number, begun, comparison, counted_by
+from tltlc.grammar.english.intervals import Span
+from tltlc.grammar.english.quantities import IT, Duration, begun, counted_by
 from tltlc.grammar.english.rules import Reading, When, begun_text
 from tltlc.grammar.english.terminals import Term
 from tltlc.grammar.mistakes.sentences.states import AND, ATOM, OR, State, joined
@@ -17,30 +19,14 @@ from tltlc.grammar.mistakes.sentences.vocabulary import NEGATED_SIGN
 
 _MOST_TOTAL: Final = 6
 """The most steps of a total of which a clause counts each."""
+_COMPARED: Final = re.compile(r"(times\(.*\)) (<=|<|>=|>) (\d+)")
+_ORDINALS: Final = {"2": "second", "3": "third", "4": "fourth", "5": "fifth"}
 _WHILE: Final = ("while", "as long as", "when")
 
 _Found = Reading | list[Reading] | None
 
 
-@record
-class Period:
-    """Where each period of a kind begins, and what holds in it; nothing that is known for `in each wave`."""
-
-    event: State
-    state: State | None = None
-
-
-@record
-class Amount:
-    """By how much a number changes: ``hp falls by at most 20``. The sign is empty for ``falls by 20``."""
-
-    term: Term
-    change: Change
-    sign: str
-    step: Number
-
-
-class Periods(Intervals):
+class Periods(Differences):
     """The meanings of the rules about what happens since an event, or in each period of its kind."""
 
     # What is counted.
@@ -78,26 +64,19 @@ class Periods(Intervals):
     def since_count(self, event: State, counted: Counted) -> _Found:
         return self.count_since(counted, event)
 
+    def bool_since(self, term: Term, event: State, sign: Term, number: Term) -> _Found:
+        return self.count_since(Counted(State(term.text), sign.text, number.text), event)
+
+    def avoid(self, event: Event) -> _Found:
+        if isinstance(event, State) and event.text.startswith(("times_since(", "total_time(")):
+            return Reading((f"keep {event.negated().text}",))
+        return super().avoid(event)
+
     def avoid_count_since(self, counted: Counted, event: State) -> _Found:
         avoided = _avoided(counted)
         return None if avoided is None else self.count_since(avoided, event)
 
     # In each period.
-
-    def stretch_of(self, state: State) -> Period | None:
-        """Return the period of a condition: it begins where the condition does."""
-        if state.level > ATOM or is_negative(state):
-            return None
-        return Period(begun(state), None if begun(state) == state else state)
-
-    def number_period(self, term: Term) -> Period | None:
-        """Return the period of a number such as `wave`: one for each of its values."""
-        state = self.changes(term, "varies") if term.kind == "INT" and term.declared is not None else None
-        return None if state is None else Period(state)
-
-    def enum_period(self, name: Term) -> Period | None:
-        state = self.enum_varies(name)
-        return None if state is None else Period(state)
 
     def count_in_each(self, counted: Counted, period: Period) -> _Found:
         """Return the readings of `at most 2 pings per dive`: from each beginning on, or only while it holds."""
@@ -120,9 +99,14 @@ class Periods(Intervals):
         if state is None or counted.sign not in (">=", ">", "=="):
             return None
         if period.state is None:
-            start = f"{period.event.at(AND)} and previously once {period.event.at(ATOM)}"
+            start = period.event.at(OR)
+            if "previous(" not in start:  # which holds only where a period has ended
+                start = f"{period.event.at(AND)} and previously once {period.event.at(ATOM)}"
             return Reading((f"keep {start} implies previously ({state.text})",))
         return Reading((f"keep ends {period.state.at(ATOM)} implies previously ({state.text})",))
+
+    def most_in_each(self, number: Term, term: Term, period: Period) -> _Found:
+        return self.count_in_each(Counted(State(term.text), "<=", number.text), period)
 
     def in_each_count(self, period: Period, counted: Counted) -> _Found:
         return self.count_in_each(counted, period)
@@ -139,7 +123,7 @@ class Periods(Intervals):
             return None
         if when == "each":
             period = self.stretch_of(state)
-            return period and self.count_in_each(counted, period)
+            return None if period is None else self.count_in_each(counted, period)
         one = joined([State(f"({begun_text(counted.state)})"), state], "and")
         together = self.limit_count(Counted(one, counted.sign, counted.number))
         inside = _while(counted, state)
@@ -152,6 +136,26 @@ class Periods(Intervals):
 
     def while_count(self, when: When, event: Event, counted: Counted) -> _Found:
         return self.count_while(counted, when, event)
+
+    def count_in(self, counted: Counted, state: State) -> _Found:
+        return self.count_while(counted, "while", state)
+
+    def avoid_count_in(self, counted: Counted, state: State) -> _Found:
+        return self.avoid_count_while(counted, "while", state)
+
+    def last(self, answers: list[Asked], when: When, event: Event) -> _Found:
+        """Return the readings of `times(hit) <= 3 while airborne`; changes are rules, and no goals."""
+        text = answers[0].answer.state.text
+        found = super().last(answers, when, event)
+        if not isinstance(found, list) or when != "while":
+            return found
+        if text.startswith("times(") and (compared := _COMPARED.fullmatch(text)) and not answers[1:]:
+            counted = self.times_compared(
+                Term("INT", compared[1]), Term("SIGN", compared[2]), Term("NUMBER", compared[3])
+            )
+            return None if counted is None else self.count_while(counted, when, event)
+        is_change = "previous(" in text or "value_at(" in text
+        return [reading for reading in found if not (is_change and reading.clauses[0].startswith("reach "))]
 
     def times_while(self, times: Term, state: State, sign: Term, number: Term) -> _Found:
         counted = self.times_compared(times, sign, number)
@@ -171,9 +175,9 @@ class Periods(Intervals):
 
     def each_nth(self, number: str, term: Term, state: State) -> None:
         self.limits.append(
-            f"no clause can say what holds at each {number}th `{term.text}`: let the game count, and supply the number; "
-            f"`times({term.text}) == {number}` is about one of play, `times_since({term.text}, q) == {number}` about one "
-            "since each `q`"
+            f"no clause can say what holds at each {_ORDINALS[number]} `{term.text}`: let the game count, and supply "
+            f"the number; `times({term.text}) == {number}` is about one of play, "
+            f"`times_since({term.text}, q) == {number}` about one since each `q`"
         )
 
     # Up to an event.
@@ -217,80 +221,29 @@ class Periods(Intervals):
         assert most is not None
         return Reading((at_next, f"keep once {so_far} implies {most.text}"))
 
-    # By how much a number changes.
-
-    def amount(self, term: Term, change: Change, *rest: str | Number) -> Amount | None:
-        step = rest[-1]
-        assert isinstance(step, Number)
-        return Amount(term, change, rest[0] if isinstance(rest[0], str) else "", step)
-
-    def lost(self, *parts: str | Number | Term) -> Amount | None:
-        *sign, step, term = parts
-        assert isinstance(term, Term) and isinstance(step, Number)
-        return self.amount(term, "falls", *(part for part in sign if isinstance(part, str)), step)
-
-    def gained(self, *parts: str | Number | Term) -> Amount | None:
-        found = self.lost(*parts)
-        return None if found is None else replace(found, change="rises")
-
-    def change_in(self, amount: Amount, period: Period) -> _Found:
-        """Return the rule of `hp falls by at most 20 in each fight`, or of `gain at least 100 score per wave`."""
-        value = self.value_at_last(amount.term, period.event)
-        if value is None or amount.change not in ("falls", "rises") or not amount.sign:
-            return None
-        if amount.sign in ("<", "<="):
-            rule = _changed(amount, value)
-            if rule is None:
-                return None
-            inside = "" if period.state is None else f"{period.state.at(OR)} implies "
-            return Reading((f"keep {inside}{rule.text}",))
-        if period.state is not None:
-            rule = _changed(amount, value)
-            return rule and Reading((f"keep ends {period.state.at(ATOM)} implies {rule.text}",))
-        rule = _changed(amount, Number(f"previous({value.text})", value.term))
-        return rule and Reading((f"keep {period.event.at(OR)} implies {rule.text}",))
-
-    def change_while(self, amount: Amount, period: Period) -> _Found:
-        """Return the readings of `hull falls by at most 15 during a storm`: since it began, or at each step."""
-        whole = self.change_in(amount, period)
-        if not isinstance(whole, Reading) or period.state is None or amount.sign not in ("<", "<="):
-            return whole
-        step = _changed(amount, Number(f"previous({amount.term.text})", amount.term))
-        assert step is not None
-        return [
-            Reading(whole.clauses, f"if it counts from where `{period.state.text}` began"),
-            Reading((f"keep {period.state.at(OR)} implies {step.text}",), "if at each step"),
-        ]
-
-    def while_change(self, period: Period, amount: Amount) -> _Found:
-        return self.change_while(amount, period)
-
-    def in_each_change(self, period: Period, amount: Amount) -> _Found:
-        return self.change_in(amount, period)
-
-    def avoid_change_in(self, amount: Amount, period: Period) -> _Found:
-        sign = {">": "<=", ">=": "<", "": "<"}.get(amount.sign)
-        return None if sign is None else self.change_in(replace(amount, sign=sign), period)
-
-    def must_not_change_in(self, term: Term, change: Change, sign: str, step: Number, period: Period) -> _Found:
-        return self.avoid_change_in(Amount(term, change, sign, step), period)
-
-    def change_since(self, amount: Amount, event: State) -> _Found:
-        value = self.value_at_last(amount.term, event)
-        rule = None if value is None else _changed(amount, value)
-        if rule is None or not amount.sign:
-            return None
-        return Reading((f"{'keep' if amount.sign in ('<', '<=') else 'reach'} {rule.text}",))
-
     # In total.
 
     def total(self, state: State, sign: str, duration: Duration) -> _Found:
         """Return the rule of `seen at most 30 s in total`; for a few steps, also the one that counts each step."""
-        if duration.is_steps or sign not in ("<=", "<", ">=", ">") or is_negative(state) or state.level > AND:
-            return super().total(state, sign, duration) if duration.is_steps else None
+        if duration.is_steps and float(duration.number) > _MOST_TOTAL:
+            self.limits.append(
+                f"no clause can say at how many steps `{state.text}` holds in total, only for how long: "
+                f"`keep total_time({state.text}) <= 5 s`"
+            )
+            return None
+        if duration.is_steps:
+            return super().total(state, sign, duration)
+        if sign not in ("<=", "<", ">=", ">") or state.level > AND:
+            return None
         keyword = "keep" if sign in ("<=", "<") else "reach"
         whole = Reading((f"{keyword} total_time({state.text}) {sign} {duration.text}",))
         steps = round(self.steps(duration), 6)
+        if is_negative(state) and keyword == "reach":
+            denied = f"keep total_time({state.negated().text}) {NEGATED_SIGN[sign]} {duration.text}"
+            return [
+                replace(whole, condition=f"for the time with `{state.text}`"),
+                Reading((denied,), f"for that with `{state.negated().text}`"),
+            ]
         if keyword == "reach" or not 0 < steps <= _MOST_TOTAL:
             return whole
         number = int(steps) if sign == "<=" else ceil(steps) - 1
@@ -299,20 +252,50 @@ class Periods(Intervals):
             Reading((f"avoid {' then '.join([state.at(OR)] * (number + 1))}",), "if each step counts"),
         ]
 
+    def total_reached(self, state: State, duration: Duration) -> _Found:
+        return self.total(state, ">=", duration)
+
+    def total_held(self, state: State, *rest: str | Duration) -> State | None:
+        sign, duration = rest[0] if len(rest) > 1 else ">=", rest[-1]
+        if not isinstance(duration, Duration) or duration.is_steps or not isinstance(sign, str):
+            return None
+        total = f"total_time({state.text})"
+        return State(f"{total} {sign} {duration.text}", ATOM, f"{total} {NEGATED_SIGN[sign]} {duration.text}")
+
     def total_first(self, sign: str, duration: Duration, state: State) -> _Found:
         return self.total(state, sign, duration)
 
     # Answers to what happens so often.
 
+    def number_counted(self, number: Term, term: Term) -> Counted:
+        return Counted(State(term.text), "", number.text)
+
     def first(self, when: When, event: Event, answers: list[Asked]) -> _Found:
+        if isinstance(event, Counted):
+            return self._after_several(when, event, answers)
+        if not isinstance(event, State):
+            return super().first(when, event, answers)
+        event, named = self._of_it(when, event, answers)
+        return super().first(when, event, named)
+
+    def _of_it(self, when: When, event: State, answers: list[Asked]) -> tuple[State, list[Asked]]:
+        """Return the event of a rule, and the answers with its name for `it`, which may have begun and ended."""
+        base = event.text.removeprefix("ends ").removeprefix("begins ")
+        named = [
+            replace(asked, answer=replace(asked.answer, state=_with_name(asked.answer.state, base)))
+            for asked in answers
+        ]
+        is_own = any(f", begins {base})" in asked.answer.state.text for asked in named)
+        return (State(f"ends {base}") if is_own and when == "after" and base == event.text else event), named
+
+    def _after_several(self, when: When, event: Counted, answers: list[Asked]) -> _Found:
+        """Return the readings of `when jump twice, land within 5 s`: each time, or once."""
         answer = answers[0].answer
-        is_clear = isinstance(event, Counted) and event.sign in ("", ">=") and event.number != "1" and when != "while"
-        if not is_clear or not isinstance(event, Counted) or answers[1:] or answer.kind != "within":
-            return super().first(when, event, answers)
+        is_clear = event.sign in ("", ">=") and event.number != "1" and when != "while"
         again = _times_since(replace(event, sign=">="), answer.state)
-        asked = f"eventually within {answer.time} {answer.state.at(ATOM)}"
-        if again is None or is_negative(answer.state):
+        if not is_clear or answers[1:] or answer.kind != "within" or again is None or is_negative(answer.state):
             return super().first(when, event, answers)
+        asked = f"eventually within {answer.time} {answer.state.at(ATOM)}"
         return [
             Reading((f"keep {again.text} implies {asked}",), f"if each `{answer.state.text}` begins a new count"),
             Reading((f"keep begins (times({event.state.text}) >= {event.number}) implies {asked}",),
@@ -377,8 +360,6 @@ def _avoided(counted: Counted) -> Counted | None:
     return None if sign is None else replace(counted, sign=sign)
 
 
-def _changed(amount: Amount, before: Number) -> State | None:
-    """Return that a number has changed by so much since it had a value."""
-    operator, sign = ("-", MIRRORED[amount.sign]) if amount.change == "falls" else ("+", amount.sign)
-    then = Number(f"{before.text} {operator} {amount.step.text}", amount.term)
-    return comparison(Number(amount.term.text, amount.term), sign, then)
+def _with_name(state: State, name: str) -> State:
+    """Return a condition with the name of an event for `it`."""
+    return State(state.text.replace(IT, name), state.level, state.opposite.replace(IT, name))

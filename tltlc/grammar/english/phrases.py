@@ -30,8 +30,8 @@ PHRASES: Final[Mapping[str, str]] = {
     "per": "per|in each|in every|each|every|for each|for every|during each|within each|"
     "during every|in any|within|between|in one|in single|in same|during one|during single|within one|within single|"
     "throughout each|over each|for one|from one|of each|of every|in any one|within any|during any",
-    "during_one": "per|in each|in every|each|every|for each|for every|during each|within each|during every|in any|in one|"
-    "in single|in same|during one|during single|within one|within single|throughout each|over each|within any|"
+    "during_one": "per|in each|in every|each|every|for each|for every|during each|within each|during every|in any|"
+    "in one|in single|in same|during one|during single|within one|within single|throughout each|over each|within any|"
     "during any|over one|over whole|in whole|during whole",
     "in": "in|during|while|within|throughout|over|when",
     "lose": "lose|loses|lose more|drop|drops",
@@ -75,7 +75,9 @@ PHRASES: Final[Mapping[str, str]] = {
     "lasts": "lasts|last|must last|should last|has to last|shall last|always lasts|must always last|needs to last|"
     "takes|must take|stays on|lasts for|holds for|holds",
     "each": "each|every|any",
-    "for": "for|for the next|for a full|for a total of|for next|for at least|at least for|for the following",
+    "for_total": "for a total of|for a total time of|for a combined",
+    "spend": "spend|spends|be",
+    "for": "for|for the next|for a full|for next|for at least|at least for|for the following",
     "for_last": "for last|for previous|throughout last|during last|over last|for whole last|for at least last|for past",
     "within": "within|in|by|in under|in less than|in at most|in no more than|no later than|within at most|inside|"
     "in the next|within the next|in next|within next|not later than|under",
@@ -153,9 +155,9 @@ PHRASES: Final[Mapping[str, str]] = {
     "is_not": "is not|isn't|not|not in|not at|is not in|is not at|does not equal|differs from|is other than|"
     "must not be|should not be|must not equal|cannot be|can't be|may not be|mustn't be|shouldn't be",
     "earlier": "before|earlier|ago|beforehand|before that",
-    "in_total": "in total|total|altogether|overall|in all|in sum|in whole run|in whole game|in entire run|in entire game|"
-    "cumulative|cumulatively|over whole run|over whole game|over entire run|over entire game|during whole run|"
-    "during whole game|in whole level|over whole level|all in all|all together|summed up|added up|combined|"
+    "in_total": "in total|total|altogether|overall|in all|in sum|in whole run|in whole game|in entire run|"
+    "in entire game|cumulative|cumulatively|over whole run|over whole game|over entire run|over entire game|"
+    "during whole run|during whole game|in whole level|over whole level|all in all|all together|summed up|added up|combined|"
     "accumulated|throughout whole run|throughout whole game|in whole episode|over whole episode|across whole run|"
     "across whole game|per game|per run|per episode",
     "falls_below": "falls below|drops below|goes below|drops under|falls under",

@@ -12,6 +12,8 @@ from tltlc.grammar.mistakes.sentences.vocabulary import NEGATED_SIGN
 
 MIRRORED: Final = {"<": ">", "<=": ">=", ">": "<", ">=": "<=", "==": "==", "!=": "!="}
 Change = Literal["falls", "rises", "stays", "varies"]
+IT: Final = "?"
+"""What stands in a clause for an event that is not known yet."""
 _FUNCTIONS: Final = ("times(", "times_since(", "total_time(", "time_holding(", "time_since(")
 """The functions whose values are counts and times, which no clause keeps from an event on."""
 
@@ -75,7 +77,7 @@ class Quantities:
         self.counts: set[str] = set()
         """The conditions of which `count(a)` may count the steps, or how often they begin."""
         self.values: dict[str, tuple[str, State]] = {}
-        """Maps the values of numbers at events to the number and the event: `value_at(x, begins a)` to x and begins a."""
+        """Maps the value of a number at an event to the two: `value_at(x, begins a)` to x and `begins a`."""
         self.returning: dict[str, State] = {}
         """Maps the conditions of numbers that return to a value to the event at which they had it."""
         self.changing: set[str] = set()
@@ -146,6 +148,16 @@ class Quantities:
 
     def total_of(self, state: State) -> Number:
         return Number(f"total_time({state.text})", Term("REAL", f"total_time({state.text})"))
+
+    def total_of_bool(self, term: Term) -> Number:
+        return self.total_of(State(term.text))
+
+    def value_at_own(self, term: Term) -> Number | None:
+        """Return the value of a number when `it` began, which the condition of the rule names."""
+        return self.value_at_last(term, State(f"begins {IT}"))
+
+    def count_of_since(self, term: Term, event: State) -> Number | None:
+        return self.times_since(Term("INT", f"times({term.text})"), event)
 
     def times_since(self, times: Term, event: State) -> Number | None:
         counted = counted_by(times)

@@ -37,7 +37,9 @@ _BEFORE_VALUES: Final = frozenset(
     for word in phrase.split()
 )
 """Words between an enum and its value."""
-CALLED: Final = frozenset("within after on when if next finally count duration cooldown abs time_in hold_time".split())
+CALLED: Final = frozenset(
+    "within after on when if next finally count duration cooldown abs time_in hold_time total".split()
+)
 """Words of the grammar that people write with brackets behind them, as functions."""
 
 

@@ -8,7 +8,7 @@ from tltlc.grammar.english.quantities import Change, Number
 from tltlc.grammar.english.rules import Reading, Rules
 from tltlc.grammar.english.terminals import Term
 from tltlc.grammar.mistakes.sentences.answers import Answer
-from tltlc.grammar.mistakes.sentences.states import ATOM, OR, RULE, State
+from tltlc.grammar.mistakes.sentences.states import AND, ATOM, OR, RULE, State
 
 
 class Transitions(Rules):
@@ -54,10 +54,19 @@ class Transitions(Rules):
 
     def _of_value(self, state: State) -> list[Reading]:
         """Return the readings of a condition alone about the value of a number at an event."""
-        text, events = state.text, [event for value, (_, event) in self.values.items() if value in state.text]
-        begun = events[0].text.removeprefix("begins ") if len({event.text for event in events}) == 1 else ""
+        text = state.text
+        values = sorted((text.index(value), value) for value in self.values if value in text)
+        _, first = values[0]
+        term, event = self.values[first]
+        if len({self.values[value][1].text for _, value in values}) > 1 or event.text.startswith("ends "):
+            now = text.replace(first, term)
+            keep = Reading((f"keep {event.at(OR)} implies {now}",), f"for each step with `{event.text}`")
+            if event.text.startswith("ends "):
+                return [replace(keep, condition="")]
+            return [keep, Reading((f"reach {event.at(AND)} and {now}",), "if it is a goal")]
+        begun = event.text.removeprefix("begins ")
         keep = Reading((f"keep {text}",), "for every step, before the first event compared with the first step")
-        if not begun or begun == events[0].text:
+        if begun == event.text:
             return [Reading((f"reach {text}",), "if it is a goal"), keep]
         at_end = Reading((f"keep ends {begun} implies {state.at(OR)}",), f"if it is asked for where `{begun}` ends")
         if text in self.returning:

@@ -20,11 +20,14 @@ from tltlc.grammar.mistakes.sentences.words import Words, phrases
 _OFTEN: Final = ("once", "twice", "thrice")
 _PERIODS: Final = phrases("per", "in each", "in every", "each", "every", "while", "during", "in one", "in a single")
 """Words before what a count is about: a stretch of play that comes again."""
+_TOTALS: Final = phrases("total", "altogether", "overall")
 _EVENTS: Final = ("when", "whenever", "if", "after")
 
 
 def counts_in_periods(words: Words) -> bool:
-    """Whether a sentence counts while something holds or in each of several periods, or is about so many events."""
+    """Whether a sentence counts in each of several periods or up to an event, or adds times up."""
+    if words.find(_TOTALS) is not None:
+        return True
     return _counts(words) and (words.word(0) in _EVENTS or words.find(_PERIODS) is not None)
 
 
