@@ -48,6 +48,8 @@ ONE_READING = {
     "if fire at least 3 times since the last spray then boss_dead": [
         "keep times_since(fire, spray) >= 3 implies boss_dead"
     ],
+    "when fire 3 times without spray then boss_dead": ["keep times_since(fire, spray) >= 3 implies boss_dead"],
+    "(fire and spray) for at most 9 s in total": ["keep total_time(fire and spray) <= 9 s"],
     "when times(fire) since spray > 3 then boss_dead": ["keep times_since(fire, spray) > 3 implies boss_dead"],
     "at most 2 fire in each lap": ["keep times_since(fire, lap != previous(lap)) <= 2"],
     "keep times(fire) <= 2 per lap": ["keep times_since(fire, lap != previous(lap)) <= 2"],
@@ -83,6 +85,8 @@ ONE_READING = {
         "keep once spray implies times_since(fire, begins spray) <= 1",
     ],
     # Times in total.
+    "fire at most 3 times in total": ["keep times(fire) <= 3"],
+    "fire total time under 20 s": ["keep total_time(fire) < 20 s"],
     "fire for at most 4 s in total": ["keep total_time(fire) <= 4 s"],
     "total time fire at most 30 s": ["keep total_time(fire) <= 30 s"],
     "total(fire) <= 30 s": ["keep total_time(fire) <= 30 s"],
@@ -138,18 +142,9 @@ ONE_READING = {
         "keep fire implies health >= value_at(health, begins fire)"
     ],
     "keep health drops by at most 40 since ends fire": ["keep health >= value_at(health, ends fire) - 40"],
-    "never lose more than 20 health in one fire": ["keep fire implies health >= value_at(health, begins fire) - 20"],
-    "never lose 20 health in one fire": ["keep fire implies health > value_at(health, begins fire) - 20"],
-    "lose at most 15 health per fire": ["keep fire implies health >= value_at(health, begins fire) - 15"],
-    "health must not drop by more than 15 in any fire": [
-        "keep fire implies health >= value_at(health, begins fire) - 15"
-    ],
     "gain no more than 50 coins per lap": ["keep coins <= value_at(coins, lap != previous(lap)) + 50"],
     "gain at least 10 coins per lap": [
         "keep lap != previous(lap) implies coins >= previous(value_at(coins, lap != previous(lap))) + 10"
-    ],
-    "coins increases by at least 10 during each fire": [
-        "keep ends fire implies coins >= value_at(coins, begins fire) + 10"
     ],
     "keep fire implies after 0.2 s spray": ["keep fire implies next after 0.2 s spray"],
     "phase is shift begins exactly 0.2 s after fire": ["keep fire implies next after 0.2 s begins (phase is shift)"],
@@ -429,7 +424,7 @@ SEVERAL = [
 ]
 IN_ALL_OR_EACH = [
     ("keep fire implies health >= value_at(health, begins fire) - 15", "if it counts from where `fire` began"),
-    ("keep fire implies health >= previous(health) - 15", "if at each step"),
+    ("keep fire implies health >= previous(health) - 15", "for each step with `fire`"),
 ]
 SEVERAL_READINGS = {
     "cooldown(fire, 2 s)": AGAIN,
@@ -550,6 +545,35 @@ SEVERAL_READINGS = {
             "if each `begins spray` begins a new count",
         ),
     ],
+    "never lose more than 15 health in one fire": IN_ALL_OR_EACH,
+    "lose at most 15 health per fire": IN_ALL_OR_EACH,
+    "health must not drop by more than 15 in any fire": IN_ALL_OR_EACH,
+    "never lose 20 health in one fire": [
+        ("keep fire implies health > value_at(health, begins fire) - 20", "if it counts from where `fire` began"),
+        ("keep fire implies health > previous(health) - 20", "for each step with `fire`"),
+    ],
+    "coins increases by at least 10 during each fire": [
+        ("keep ends fire implies coins >= value_at(coins, begins fire) + 10", "if it counts from where `fire` began"),
+        ("keep fire implies coins >= previous(coins) + 10", "for each step with `fire`"),
+    ],
+    "time spent in fire at most 30 s": [
+        ("keep total_time(fire) <= 30 s", "for all stretches together"),
+        ("keep time_holding(fire) <= 30 s", "for each stretch"),
+    ],
+    "fire at most 9 s in total during spray": [
+        ("keep total_time(fire and spray) <= 9 s", "if all steps with `spray` count together"),
+        (
+            "keep spray implies total_time(fire, 1 h) - value_at(total_time(fire, 1 h), begins spray) <= 9 s",
+            "if each `spray` counts anew",
+        ),
+    ],
+    "fire for at most 9 s in each lap": [
+        (
+            "keep total_time(fire, 1 h) - value_at(total_time(fire, 1 h), lap != previous(lap)) <= 9 s",
+            "for all stretches with `fire` together",
+        ),
+        ("keep time_holding(fire) <= 9 s", "for each stretch"),
+    ],
     "fire for at most 0.3 s in total": [
         ("keep total_time(fire) <= 0.3 s", "if the first step of each stretch counts 0 s"),
         ("avoid fire then fire then fire then fire", "if each step counts"),
@@ -575,6 +599,13 @@ SEVERAL_READINGS = {
             "keep begins fire implies next eventually coins == value_at(coins, begins fire)",
             "if at some step after it began",
         ),
+    ],
+    "after fire keep coins >= coins at fire until spray": [
+        (
+            "keep fire implies (coins >= value_at(coins, begins fire) weak_until spray)",
+            "if play may end before `spray`",
+        ),
+        ("keep fire implies (coins >= value_at(coins, begins fire) until spray)", "if `spray` must come"),
     ],
     "coins@fire - coins@spray >= 10": [
         ("keep begins fire implies coins - value_at(coins, begins spray) >= 10", "for each step with `begins fire`"),
@@ -679,7 +710,7 @@ UNSAYABLE = {
     "fire never happens three times within 5 s": "no clause can say how often",
     "avoid more than 2 times fire within 5 s": "no clause can say how often",
     "fire => coins@2s > coins": "no clause can say what `coins` is 2 s later or earlier",
-    "fire for at most 20 steps in total": "no clause can say at how many steps `fire` holds in total, only for how long",
+    "fire for at most 20 steps in total": "no clause can say at how many steps `fire` holds in total",
     "fire at most 3 times within any 10 s": "no clause can say how often",
 }
 

@@ -91,26 +91,29 @@ class Differences(Intervals):
         return None if rule is None else Reading((f"keep {period.event.at(OR)} implies {rule.text}",))
 
     def change_while(self, difference: Difference, period: Period) -> _Found:
-        """Return the readings of `hull falls by at most 15 during a storm`: since it began, or at each step."""
+        """Return the readings of `hull falls by at most 15 during a storm`: since it began, or at each step.
+
+        A hit lasts for one step, so `lose at most 15 hull per hit` is about the step before it.
+        """
         whole = self.change_in(difference, period)
-        if not isinstance(whole, Reading) or period.state is None or difference.sign not in ("<", "<="):
+        if not isinstance(whole, Reading) or period.state is None:
             return whole
         step = _changed(difference, Number(f"previous({difference.term.text})", difference.term))
         assert step is not None
         return [
-            Reading(whole.clauses, f"if it counts from where `{period.state.text}` began"),
-            Reading((f"keep {period.state.at(OR)} implies {step.text}",), "if at each step"),
+            replace(whole, condition=f"if it counts from where `{period.state.text}` began"),
+            Reading((f"keep {period.state.at(OR)} implies {step.text}",), f"for each step with `{period.state.text}`"),
         ]
 
     def while_change(self, period: Period, difference: Difference) -> _Found:
         return self.change_while(difference, period)
 
     def in_each_change(self, period: Period, difference: Difference) -> _Found:
-        return self.change_in(difference, period)
+        return self.change_while(difference, period)
 
     def avoid_change_in(self, difference: Difference, period: Period) -> _Found:
         sign = {">": "<=", ">=": "<", "": "<"}.get(difference.sign)
-        return None if sign is None else self.change_in(replace(difference, sign=sign), period)
+        return None if sign is None else self.change_while(replace(difference, sign=sign), period)
 
     def must_not_change_in(self, term: Term, change: Change, sign: str, step: Number, period: Period) -> _Found:
         return self.avoid_change_in(Difference(term, change, sign, step), period)

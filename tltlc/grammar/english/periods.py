@@ -19,6 +19,8 @@ from tltlc.grammar.mistakes.sentences.vocabulary import NEGATED_SIGN
 
 _MOST_TOTAL: Final = 6
 """The most steps of a total of which a clause counts each."""
+_LONGEST_TOTAL: Final = "1 h"
+"""The maximum of a time in total that is compared with its value at an event."""
 _COMPARED: Final = re.compile(r"(times\(.*\)) (<=|<|>=|>) (\d+)")
 _ORDINALS: Final = {"2": "second", "3": "third", "4": "fourth", "5": "fifth"}
 _WHILE: Final = ("while", "as long as", "when")
@@ -236,7 +238,7 @@ class Periods(Differences):
         if sign not in ("<=", "<", ">=", ">") or state.level > AND:
             return None
         keyword = "keep" if sign in ("<=", "<") else "reach"
-        whole = Reading((f"{keyword} total_time({state.text}) {sign} {duration.text}",))
+        whole = Reading((f"{keyword} total_time({_without_brackets(state.text)}) {sign} {duration.text}",))
         steps = round(self.steps(duration), 6)
         if is_negative(state) and keyword == "reach":
             denied = f"keep total_time({state.negated().text}) {NEGATED_SIGN[sign]} {duration.text}"
@@ -265,6 +267,59 @@ class Periods(Differences):
     def total_first(self, sign: str, duration: Duration, state: State) -> _Found:
         return self.total(state, sign, duration)
 
+    def time_limit(self, term: Term, sign: str | Term, duration: Duration) -> _Found:
+        """Return the readings of `time in the zone at most 30 s`: of each stretch, or of all of them."""
+        operator = sign if isinstance(sign, str) else sign.text
+        total = self.total(State(term.text), operator, duration)
+        if operator not in ("<=", "<") or not isinstance(total, (Reading, list)):
+            return total
+        whole = total if isinstance(total, Reading) else total[0]
+        return [
+            replace(whole, condition="for all stretches together"),
+            Reading((f"keep time_holding({term.text}) {operator} {duration.text}",), "for each stretch"),
+        ]
+
+    def total_while(self, state: State, sign: str | Term, duration: Duration, during: State) -> _Found:
+        """Return the rule of `seen at most 9 s in total during storm`, for all storms together."""
+        operator = sign if isinstance(sign, str) else sign.text
+        both = joined([state, during], "and")
+        total = self.total(both, operator, duration) if both.level <= AND else None
+        whole = total[0] if isinstance(total, list) else total
+        period = self.stretch_of(during)
+        each = None if period is None else self.total_in_each(state, operator, duration, period)
+        if whole is None or each is None:
+            return whole
+        return [
+            replace(whole, condition=f"if all steps with `{during.text}` count together"),
+            replace(each, condition=f"if each `{during.text}` counts anew"),
+        ]
+
+    def total_time_while(self, state: State, during: State, sign: str | Term, duration: Duration) -> _Found:
+        return self.total_while(state, sign, duration, during)
+
+    def total_in_each(self, state: State, sign: str, duration: Duration, period: Period) -> Reading | None:
+        """Return the rule of `seen at most 9 s in total per storm`: by how much the time in total has grown."""
+        if sign not in ("<=", "<") or duration.is_steps:
+            return None
+        total = f"total_time({state.text}, {_LONGEST_TOTAL})"
+        inside = "" if period.state is None else f"{period.state.at(OR)} implies "
+        clause = f"keep {inside}{total} - value_at({total}, {period.event.text}) {sign} {duration.text}"
+        return Reading((clause,), f"if `{state.text}` holds for at most {_LONGEST_TOTAL} of all play")
+
+    def time_in_each(self, state: State, sign: str, duration: Duration, period: Period) -> _Found:
+        total = self.total_in_each(state, sign, duration, period)
+        if total is None:
+            return None
+        inside = "" if period.state is None else f"{period.state.at(OR)} implies "
+        each = f"keep {inside}time_holding({state.text}) {sign} {duration.text}"
+        return [
+            replace(total, condition=f"for all stretches with `{state.text}` together"),
+            Reading((each,), "for each stretch"),
+        ]
+
+    def time_first_in_each(self, sign: str, duration: Duration, state: State, period: Period) -> _Found:
+        return self.time_in_each(state, sign, duration, period)
+
     # Answers to what happens so often.
 
     def number_counted(self, number: Term, term: Term) -> Counted:
@@ -285,7 +340,7 @@ class Periods(Differences):
             replace(asked, answer=replace(asked.answer, state=_with_name(asked.answer.state, base)))
             for asked in answers
         ]
-        is_own = any(f", begins {base})" in asked.answer.state.text for asked in named)
+        is_own = any(f", begins {base})" in asked.answer.state.text and not asked.is_formula for asked in named)
         return (State(f"ends {base}") if is_own and when == "after" and base == event.text else event), named
 
     def _after_several(self, when: When, event: Counted, answers: list[Asked]) -> _Found:
@@ -334,8 +389,15 @@ def _times_since(counted: Counted, event: State) -> State | None:
     is_trivial = (sign, number) in ((">=", "0"), ("<", "0"), ("<", "1"), ("<=", "0"))
     if not number.isdecimal() or is_trivial or is_negative(counted.state) or counted.state.text == event.text:
         return None
-    count = f"times_since({counted.state.text}, {event.text})"
+    count = f"times_since({_without_brackets(counted.state.text)}, {_without_brackets(event.text)})"
     return State(f"{count} {sign} {number}", ATOM, f"{count} {NEGATED_SIGN[sign]} {number}")
+
+
+def _without_brackets(text: str) -> str:
+    """Return a condition without brackets around the whole of it."""
+    inner = text[1:-1]
+    is_whole = text.startswith("(") and text.endswith(")") and inner.find("(") <= inner.find(")")
+    return inner if is_whole and inner.count("(") == inner.count(")") else text
 
 
 def _limited_since(counted: Counted, event: State) -> Reading | None:

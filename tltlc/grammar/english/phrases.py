@@ -33,7 +33,7 @@ PHRASES: Final[Mapping[str, str]] = {
     "during_one": "per|in each|in every|each|every|for each|for every|during each|within each|during every|in any|"
     "in one|in single|in same|during one|during single|within one|within single|throughout each|over each|within any|"
     "during any|over one|over whole|in whole|during whole",
-    "in": "in|during|while|within|throughout|over|when",
+    "in": "in|during|while|within|throughout|over",
     "lose": "lose|loses|lose more|drop|drops",
     "gain": "gain|gains|earn|earns|get|gets|collect|score",
     "returns": "returns to|return to|is back to|is back at|goes back to|comes back to|is restored to|is reset to|"
@@ -157,9 +157,9 @@ PHRASES: Final[Mapping[str, str]] = {
     "earlier": "before|earlier|ago|beforehand|before that",
     "in_total": "in total|total|altogether|overall|in all|in sum|in whole run|in whole game|in entire run|"
     "in entire game|cumulative|cumulatively|over whole run|over whole game|over entire run|over entire game|"
-    "during whole run|during whole game|in whole level|over whole level|all in all|all together|summed up|added up|combined|"
-    "accumulated|throughout whole run|throughout whole game|in whole episode|over whole episode|across whole run|"
-    "across whole game|per game|per run|per episode",
+    "during whole run|during whole game|in whole level|over whole level|all in all|all together|summed up|added up|"
+    "combined|accumulated|throughout whole run|throughout whole game|in whole episode|over whole episode|"
+    "across whole run|across whole game|per game|per run|per episode",
     "falls_below": "falls below|drops below|goes below|drops under|falls under",
     "rises_above": "rises above|goes above|goes over",
     "is_never": "is never|never",
@@ -245,7 +245,7 @@ PHRASES: Final[Mapping[str, str]] = {
     "in_sequence": "consecutive|successive|next|another",
     "means": "means|means that|implies that",
     "count_of": "count|number of|number of times",
-    "duration_of": "duration|duration of|time_in|time in|time spent in|hold_time|length of|how long",
+    "duration_of": "duration|duration of|time_in|hold_time|length of|how long",
     "from_now": "later|from now|afterwards",
     "ago": "ago|earlier|before",
     "previous": "previous|prev|old|previous value of|last value of|last",
