@@ -26,22 +26,125 @@ signal fire: bool
 signal spray: bool
 signal boss_dead: bool
 signal coins: int in [0, 99]
+signal lap: int in [0, 9]
 signal health in [0, 100]
 signal phase: (menu, shift, results)
 signal state: (Idle, Dead)
 """
 
 ONE_READING = {
-    "keep times(fire) since spray <= 2": [
-        "avoid begins fire and not spray and previously (not spray since "
-        "(begins fire and not spray and previously (not spray since begins fire)))"
+    # Since an event, and in each period.
+    "keep times(fire) since spray <= 2": ["keep times_since(fire, spray) <= 2"],
+    "times(fire) <= 9 since spray": ["keep times_since(fire, spray) <= 9"],
+    "fire at most once since last spray": ["keep times_since(fire, spray) <= 1"],
+    "fire at most 9 times since spray": ["keep times_since(fire, spray) <= 9"],
+    "never more than 2 fire since the last spray": ["keep times_since(fire, spray) <= 2"],
+    "at most 2 fire since spray started": ["keep times_since(fire, begins spray) <= 2"],
+    "since the last spray, at most 2 fire": ["keep times_since(fire, spray) <= 2"],
+    "no more than 2 fire after each spray": ["keep times_since(fire, spray) <= 2"],
+    "number of fire since spray at most 2": ["keep times_since(fire, spray) <= 2"],
+    "fire at least 2 times since spray": ["reach times_since(fire, spray) >= 2"],
+    "when fire 3 times since spray, boss_dead": ["keep times_since(fire, spray) >= 3 implies boss_dead"],
+    "if fire at least 3 times since the last spray then boss_dead": [
+        "keep times_since(fire, spray) >= 3 implies boss_dead"
     ],
+    "when fire 3 times without spray then boss_dead": ["keep times_since(fire, spray) >= 3 implies boss_dead"],
+    "(fire and spray) for at most 9 s in total": ["keep total_time(fire and spray) <= 9 s"],
+    "when times(fire) since spray > 3 then boss_dead": ["keep times_since(fire, spray) > 3 implies boss_dead"],
+    "at most 2 fire in each lap": ["keep times_since(fire, lap != previous(lap)) <= 2"],
+    "keep times(fire) <= 2 per lap": ["keep times_since(fire, lap != previous(lap)) <= 2"],
+    "each lap, at most 2 fire": ["keep times_since(fire, lap != previous(lap)) <= 2"],
+    "fire max 2 per lap": ["keep times_since(fire, lap != previous(lap)) <= 2"],
+    "2 fire per lap at most": ["keep times_since(fire, lap != previous(lap)) <= 2"],
+    "no more than 3 fire in one lap": ["keep times_since(fire, lap != previous(lap)) <= 3"],
+    "never more than 3 fire per lap": ["keep times_since(fire, lap != previous(lap)) <= 3"],
+    "at least 2 fire per lap": [
+        "keep lap != previous(lap) implies previously (times_since(fire, lap != previous(lap)) >= 2)"
+    ],
+    "at most 2 fire in each state": ["keep times_since(fire, ends (state is Idle) or ends (state is Dead)) <= 2"],
+    "at most one fire per begins spray": ["keep times_since(fire, begins spray) <= 1"],
     "keep times(fire) <= 1 per phase is results": [
-        "avoid begins fire and phase is results and previously (phase is results since "
-        "(begins fire and phase is results))"
+        "keep phase is results implies times_since(fire, begins phase is results) <= 1"
     ],
-    "fire at most once since last spray": [
-        "avoid begins fire and not spray and previously (not spray since begins fire)"
+    "no more than 3 fire between two spray": ["keep times_since(fire, spray) <= 3"],
+    "at most 2 fire between spray and the next spray": ["keep times_since(fire, spray) <= 2"],
+    "between spray and spray at most 2 fire": ["keep times_since(fire, spray) <= 2"],
+    "fire at most once between spray and spray": ["keep times_since(fire, spray) <= 1"],
+    "at most 2 fire between spray and boss_dead": [
+        "keep (not boss_dead since begins spray) implies times_since(fire, begins spray) <= 2"
+    ],
+    "at least 2 fire between spray and boss_dead": [
+        "keep begins boss_dead and previously (not boss_dead since begins spray) implies "
+        "previously (times_since(fire, begins spray) >= 2)"
+    ],
+    "at least 3 fire before spray after each spray": [
+        "keep begins spray and previously once spray implies previously (times_since(fire, begins spray) >= 3)"
+    ],
+    "exactly one fire between spray and the next spray": [
+        "keep begins spray and previously once spray implies previously (times_since(fire, begins spray) == 1)",
+        "keep once spray implies times_since(fire, begins spray) <= 1",
+    ],
+    # Times in total.
+    "fire at most 3 times in total": ["keep times(fire) <= 3"],
+    "fire total time under 20 s": ["keep total_time(fire) < 20 s"],
+    "fire for at most 4 s in total": ["keep total_time(fire) <= 4 s"],
+    "total time fire at most 30 s": ["keep total_time(fire) <= 30 s"],
+    "total(fire) <= 30 s": ["keep total_time(fire) <= 30 s"],
+    "fire at most 30 s altogether": ["keep total_time(fire) <= 30 s"],
+    "fire at most 30 s in the whole run": ["keep total_time(fire) <= 30 s"],
+    "fire at most 30 s overall": ["keep total_time(fire) <= 30 s"],
+    "fire at most 30 s cumulative": ["keep total_time(fire) <= 30 s"],
+    "in total, fire for at most 30 s": ["keep total_time(fire) <= 30 s"],
+    "at most 30 s of fire in total": ["keep total_time(fire) <= 30 s"],
+    "never fire for more than 30 s in total": ["keep total_time(fire) <= 30 s"],
+    "fire must not be on for more than 30 s in total": ["keep total_time(fire) <= 30 s"],
+    "spend at most 30 s fire in total": ["keep total_time(fire) <= 30 s"],
+    "total fire time < 30 s": ["keep total_time(fire) < 30 s"],
+    "time spent fire in all < 60 s": ["keep total_time(fire) < 60 s"],
+    "fire and spray for at most 5 s in total": ["keep total_time(fire and spray) <= 5 s"],
+    "fire for at least 20 s in total": ["reach total_time(fire) >= 20 s"],
+    "reach fire for 20 s in total": ["reach total_time(fire) >= 20 s"],
+    "fire for a total of 20 s": ["reach total_time(fire) >= 20 s"],
+    "when fire for 20 s in total, spray": ["keep total_time(fire) >= 20 s implies spray"],
+    # Values at events.
+    "when fire then coins == coins at last spray": ["keep fire implies coins == value_at(coins, spray)"],
+    "when fire ends then coins >= (coins when fire started) + 5": [
+        "keep ends fire implies coins >= (value_at(coins, begins fire)) + 5"
+    ],
+    "when fire ends, coins >= coins when it began": ["keep ends fire implies coins >= value_at(coins, begins fire)"],
+    "coins after fire >= coins when it began": ["keep ends fire implies coins >= value_at(coins, begins fire)"],
+    "coins at end of fire >= coins at start of fire + 5": [
+        "keep ends fire implies coins >= value_at(coins, begins fire) + 5"
+    ],
+    "when fire then coins > coins when phase became shift": [
+        "keep fire implies coins > value_at(coins, begins (phase is shift))"
+    ],
+    "keep fire implies coins >= (coins at begins phase is shift) - 3": [
+        "keep fire implies coins >= (value_at(coins, begins (phase is shift))) - 3"
+    ],
+    "when fire, coins must be less than at the start of shift": [
+        "keep fire implies coins < value_at(coins, begins (phase is shift))"
+    ],
+    "when fire, health must be at least what it was when spray began": [
+        "keep fire implies health >= value_at(health, begins spray)"
+    ],
+    "when fire ends, more coins than when fire started": [
+        "keep ends fire implies coins > value_at(coins, begins fire)"
+    ],
+    "when fire ends, at least as many coins as when fire began": [
+        "keep ends fire implies coins >= value_at(coins, begins fire)"
+    ],
+    "in fire health stays within 15 of its value when fire began": [
+        "keep fire implies abs(health - value_at(health, begins fire)) <= 15"
+    ],
+    "while fire, abs(coins - coins@fire) <= 15": ["keep fire implies abs(coins - value_at(coins, begins fire)) <= 15"],
+    "during fire health never below health at start of fire": [
+        "keep fire implies health >= value_at(health, begins fire)"
+    ],
+    "keep health drops by at most 40 since ends fire": ["keep health >= value_at(health, ends fire) - 40"],
+    "gain no more than 50 coins per lap": ["keep coins <= value_at(coins, lap != previous(lap)) + 50"],
+    "gain at least 10 coins per lap": [
+        "keep lap != previous(lap) implies coins >= previous(value_at(coins, lap != previous(lap))) + 10"
     ],
     "keep fire implies after 0.2 s spray": ["keep fire implies next after 0.2 s spray"],
     "phase is shift begins exactly 0.2 s after fire": ["keep fire implies next after 0.2 s begins (phase is shift)"],
@@ -125,7 +228,7 @@ ONE_READING = {
     "fire lasts exactly 3 steps": [
         "keep begins fire implies (always for 3 steps fire) and weak_next after 3 steps not fire"
     ],
-    "fire for at most 0.3 s in total": ["avoid fire then fire then fire then fire"],
+    "fire for at most 3 steps in total": ["avoid fire then fire then fire then fire"],
     "phase only goes menu then shift then results then menu": [
         "keep phase is menu implies weak_next (phase is menu or phase is shift)",
         "keep phase is shift implies weak_next (phase is shift or phase is results)",
@@ -308,6 +411,21 @@ APART = [
     ("avoid (begins fire) then within 2 s (begins fire)", "if steps in a row count once"),
     ("avoid fire then within 2 s fire", "if each step counts"),
 ]
+WHILE = [
+    ("keep spray implies times_since(fire, begins spray) <= 3", "if each `spray` begins a new count"),
+    ("keep times((begins fire) and spray) <= 3", "if all steps with `spray` count together"),
+]
+SEVERAL = [
+    ("keep times_since(fire, spray) >= 2 implies eventually within 5 s spray", "if each `spray` begins a new count"),
+    (
+        "keep begins (times(fire) >= 2) implies eventually within 5 s spray",
+        "if it counts from the first step on, and asks for it once",
+    ),
+]
+IN_ALL_OR_EACH = [
+    ("keep fire implies health >= value_at(health, begins fire) - 15", "if it counts from where `fire` began"),
+    ("keep fire implies health >= previous(health) - 15", "for each step with `fire`"),
+]
 SEVERAL_READINGS = {
     "cooldown(fire, 2 s)": AGAIN,
     "fire has a cooldown of 2 s": AGAIN,
@@ -408,16 +526,94 @@ SEVERAL_READINGS = {
         ("avoid time_holding(fire and spray) > 3 s", "if the time counts only while `spray`"),
         ("avoid spray and time_holding(fire) > 3 s", "if `fire` may have begun before `spray`"),
     ],
-    "fire at most once between spray and spray": [
+    "at most one fire per spray": [
+        ("keep times_since(fire, begins spray) <= 1", "if each `begins spray` begins a new count"),
+        ("keep spray implies times_since(fire, begins spray) <= 1", "if it counts only while `spray` holds"),
+    ],
+    "keep times(fire) while spray <= 3": WHILE,
+    "fire at most 3 times while spray": WHILE,
+    "never more than 3 fire while spray": WHILE,
+    "during spray, at most 3 fire": WHILE,
+    "times(fire) <= 3 while spray": WHILE,
+    "at most 3 fire in a spray": WHILE,
+    "when fire twice, spray within 5 s": SEVERAL,
+    "after 2 fire, spray within 5 s": SEVERAL,
+    "at least 3 fire before spray": [
+        ("keep spray implies times(fire) >= 3", "if it counts from the first step on"),
         (
-            "avoid begins fire and not spray and previously (not spray since (begins fire and not spray "
-            "and previously once spray))",
-            "if steps in a row count once",
+            "keep begins spray implies previously (times_since(fire, begins spray) >= 3)",
+            "if each `begins spray` begins a new count",
         ),
+    ],
+    "never lose more than 15 health in one fire": IN_ALL_OR_EACH,
+    "lose at most 15 health per fire": IN_ALL_OR_EACH,
+    "health must not drop by more than 15 in any fire": IN_ALL_OR_EACH,
+    "never lose 20 health in one fire": [
+        ("keep fire implies health > value_at(health, begins fire) - 20", "if it counts from where `fire` began"),
+        ("keep fire implies health > previous(health) - 20", "for each step with `fire`"),
+    ],
+    "coins increases by at least 10 during each fire": [
+        ("keep ends fire implies coins >= value_at(coins, begins fire) + 10", "if it counts from where `fire` began"),
+        ("keep fire implies coins >= previous(coins) + 10", "for each step with `fire`"),
+    ],
+    "time spent in fire at most 30 s": [
+        ("keep total_time(fire) <= 30 s", "for all stretches together"),
+        ("keep time_holding(fire) <= 30 s", "for each stretch"),
+    ],
+    "fire at most 9 s in total during spray": [
+        ("keep total_time(fire and spray) <= 9 s", "if all steps with `spray` count together"),
         (
-            "avoid fire and not spray and previously (not spray since (fire and not spray and previously once spray))",
-            "if each step counts",
+            "keep spray implies total_time(fire, 1 h) - value_at(total_time(fire, 1 h), begins spray) <= 9 s",
+            "if each `spray` counts anew",
         ),
+    ],
+    "fire for at most 9 s in each lap": [
+        (
+            "keep total_time(fire, 1 h) - value_at(total_time(fire, 1 h), lap != previous(lap)) <= 9 s",
+            "for all stretches with `fire` together",
+        ),
+        ("keep time_holding(fire) <= 9 s", "for each stretch"),
+    ],
+    "fire for at most 0.3 s in total": [
+        ("keep total_time(fire) <= 0.3 s", "if the first step of each stretch counts 0 s"),
+        ("avoid fire then fire then fire then fire", "if each step counts"),
+    ],
+    "not fire for at least 60 s in total": [
+        ("reach total_time(not fire) >= 60 s", "for the time with `not fire`"),
+        ("keep total_time(fire) < 60 s", "for that with `fire`"),
+    ],
+    "health falls by at most 15 during fire": IN_ALL_OR_EACH,
+    "during fire, health falls by at most 15": IN_ALL_OR_EACH,
+    "health must not fall by more than 15 during fire": IN_ALL_OR_EACH,
+    "coins at least what it was when fire began": [
+        ("keep fire implies coins >= value_at(coins, begins fire)", "for each step with `fire`"),
+        ("keep ends fire implies coins >= value_at(coins, begins fire)", "if it is asked for where `fire` ends"),
+        (
+            "keep coins >= value_at(coins, begins fire)",
+            "for every step, before the first event compared with the first step",
+        ),
+    ],
+    "coins returns to what it was when fire began": [
+        ("keep ends fire implies coins == value_at(coins, begins fire)", "if it is asked for where `fire` ends"),
+        (
+            "keep begins fire implies next eventually coins == value_at(coins, begins fire)",
+            "if at some step after it began",
+        ),
+    ],
+    "after fire keep coins >= coins at fire until spray": [
+        (
+            "keep fire implies (coins >= value_at(coins, begins fire) weak_until spray)",
+            "if play may end before `spray`",
+        ),
+        ("keep fire implies (coins >= value_at(coins, begins fire) until spray)", "if `spray` must come"),
+    ],
+    "coins@fire - coins@spray >= 10": [
+        ("keep begins fire implies coins - value_at(coins, begins spray) >= 10", "for each step with `begins fire`"),
+        ("reach begins fire and coins - value_at(coins, begins spray) >= 10", "if it is a goal"),
+    ],
+    "after the fire, coins is the same as when fire began": [
+        ("keep ends fire implies coins == value_at(coins, begins fire)", "for each step with `ends fire`"),
+        ("keep ends fire implies always coins == value_at(coins, begins fire)", "if it holds from then on"),
     ],
     "reach fire then spray then boss_dead within 5 s": [
         (
@@ -504,24 +700,18 @@ NO_READING = (
     "when fire, spray within 3 s and stays at menu",
     "when fire, coins must be 3 or better",
     "avoid fire and spray at some point",
+    "whenever fire, coins must be greater than at the start of my last phase",
 )
 
 UNSAYABLE = {
-    "when fire then coins == coins at last spray": "no clause can say what `coins` was at `spray`",
-    "when fire ends then coins >= (coins when fire started) + 5": "no clause can say what `coins` was at `fire`",
-    "when fire then coins > coins when phase became shift": "what `coins` was at `phase becomes shift`",
-    "keep fire implies coins >= (coins at begins phase is shift) - 3": "no clause can say what `coins` was at",
-    "keep health drops by at most 40 since ends fire": "no clause can say what `health` was at `ends fire`",
-    "fire at most 9 times since spray": "let the game count since then",
-    "when fire, coins must be less than at the start of shift": "no clause can say what `coins` was at `shift`",
-    "whenever fire, coins must be greater than at the start of my last phase": "what `coins` was at `phase`",
+    "every third fire must be spray": "no clause can say what holds at each third `fire`",
     "at some point health is 30 higher than 2 s ago": "no clause can say what `health` was 2 s ago",
     "health never falls by more than 5 in 30 s": "no clause can say what `health` was 30 s ago",
     "fire never happens three times within 5 s": "no clause can say how often",
     "avoid more than 2 times fire within 5 s": "no clause can say how often",
     "fire => coins@2s > coins": "no clause can say what `coins` is 2 s later or earlier",
-    "coins@fire - coins@spray >= 10": "no clause can say what `coins` was at `fire`",
-    "fire for at most 4 s in total": "no clause can say for how long `fire` holds in total",
+    "fire for at most 20 steps in total": "no clause can say at how many steps `fire` holds in total",
+    "fire at most 3 times within any 10 s": "no clause can say how often",
 }
 
 
@@ -602,6 +792,19 @@ def test_one_fix_mends_all_words_of_a_clause_that_can_be_parsed(typed: str, mean
 @pytest.mark.parametrize(
     ("typed", "note"),
     [
+        (
+            "fire at most 3 times since spray",
+            "`times_since(fire, spray)` counts how often `fire` begins; each step with `spray` begins a new count, "
+            "in which it counts",
+        ),
+        (
+            "fire for at most 9 s in total",
+            "`total_time(fire)` adds up the stretches with `fire`, each from 0 s at its first step",
+        ),
+        (
+            "when fire, coins > coins when spray began",
+            "`value_at(coins, begins spray)` is the value at the first step until the first step with `begins spray`",
+        ),
         ("fire at most 3 times", "`times(fire)` counts how often `fire` begins: steps in a row count once"),
         (
             "avoid fire and spray for more than 0.3 s",
@@ -663,7 +866,7 @@ def test_two_ways_to_say_a_rule_about_a_stretch_of_play_agree(clauses: str, othe
 def test_so_many_steps_in_a_row_take_the_time_that_a_note_says() -> None:
     (fspa,) = tltlc.compile_text(f"{HEAD}spec s {{ avoid time_holding(fire) > 0.3 s }}")
     monitor = Monitor(fspa)
-    names = {"spray": False, "boss_dead": False, "coins": 0, "health": 1, "phase": 0, "state": 0}
+    names = {"spray": False, "boss_dead": False, "coins": 0, "lap": 0, "health": 1, "phase": 0, "state": 0}
     verdicts = [monitor.step({"fire": True, **names}).verdict for _ in range(5)]
     assert [verdict == "violated" for verdict in verdicts] == [False, False, False, False, True]
 

@@ -103,7 +103,6 @@ def test_a_count_of_two_within_a_time_has_a_clause() -> None:
     [
         ("keep times(hit) since alarm <= 9", "alarm"),
         ("keep times(hit) since begins alarm <= 9", "begins alarm"),
-        ("keep (times(hit) since alarm) <= 9", "alarm"),
         ("keep times(hit) since alarm", "alarm"),
         ("keep hit since alarm <= 9", "alarm"),
     ],
@@ -111,6 +110,18 @@ def test_a_count_of_two_within_a_time_has_a_clause() -> None:
 def test_a_count_since_an_event_has_a_function(clause: str, event: str) -> None:
     help_ = error_of(clause).help or ""
     assert help_.endswith(f"`times_since(hit, {event})` counts from the last step with `{event}` on")
+
+
+@pytest.mark.parametrize(
+    ("clause", "meant"),
+    [
+        ("keep (times(hit) since alarm) <= 9", "keep (times_since(hit, alarm)) <= 9"),
+        ("keep times(hit) since begins mode is wave <= 9", "keep times_since(hit, begins (mode is wave)) <= 9"),
+        ("keep times(hit) <= 3 in each alarm", "keep times_since(hit, begins alarm) <= 3"),
+    ],
+)
+def test_a_count_since_an_event_gets_the_clause(clause: str, meant: str) -> None:
+    assert f"`{meant}`" in (error_of(clause).help or "")
 
 
 def test_a_bool_that_is_compared_may_be_counted() -> None:
@@ -122,7 +133,6 @@ def test_a_bool_that_is_compared_may_be_counted() -> None:
 @pytest.mark.parametrize(
     ("clause", "word"),
     [
-        ("keep times(hit) since begins mode is wave <= 9", "<="),
         ("keep mode is not wave < 2", "<"),
         ("keep alarm implies eventually within 5 s mode is dive unless not hidden", "unless"),
         ("keep mode is dive glows", "dive glows"),

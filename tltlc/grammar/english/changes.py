@@ -5,10 +5,10 @@ from __future__ import annotations
 from typing import Final
 
 from tltlc.grammar.english.events import Event, Held
-from tltlc.grammar.english.quantities import MIRRORED, Change, Duration, Number, comparison
+from tltlc.grammar.english.quantities import MIRRORED, Change, Duration, Number, begun, comparison
 from tltlc.grammar.english.rules import Reading, Rules
 from tltlc.grammar.english.terminals import Term
-from tltlc.grammar.mistakes.sentences.states import AND, State, joined
+from tltlc.grammar.mistakes.sentences.states import AND, ATOM, OR, State, joined
 
 _MOST_STEPS_BACK: Final = 10
 """The most steps by which a clause looks back at the value of a number."""
@@ -109,11 +109,81 @@ class Changes(Rules):
     def compared_with_initial(self, term: Term, sign: str) -> State | None:
         return comparison(Number(term.text, term), sign, self.initial(term))
 
-    def moment(self, *terms: Term) -> str:
-        return " ".join(term.text for term in terms)
+    # Values at events.
 
-    def compared_with_value_at(self, term: Term, sign: str, moment: str) -> None:
-        self.value_at(term, Term("BOOL", moment))
+    def moment(self, event: State) -> State:
+        return begun(event)
+
+    def last_moment(self, event: State) -> State:
+        return event
+
+    def end_moment(self, event: State) -> State:
+        return State(f"ends {event.at(ATOM)}")
+
+    def value_moment(self, value: Term) -> State | None:
+        """Return the step at which an enum takes a value: `at the start of shift`."""
+        name = self.enum_of(value)
+        return None if name is None else self.enum_begins(name, value)
+
+    def enum_moment(self, name: Term) -> State | None:
+        return self.enum_varies(name)
+
+    def value_at_value(self, term: Term, value: Term) -> Number | None:
+        event = self.value_moment(value)
+        return None if event is None else self.value_at_last(term, event)
+
+    def value_before_event(self, term: Term, event: State) -> Number | None:
+        previous = f"previous({term.text})"
+        return None if term.text.startswith("previous(") else self.value_at(Term(term.kind, previous), event)
+
+    def compared_with_value_at(self, term: Term, sign: str | Term, moment: State) -> State | None:
+        value = self.value_at_last(term, moment)
+        operator = sign if isinstance(sign, str) else sign.text
+        return None if value is None else comparison(Number(term.text, term), operator, value)
+
+    def not_compared_with_value_at(self, term: Term, sign: str, moment: State) -> State | None:
+        state = self.compared_with_value_at(term, sign, moment)
+        return None if state is None else state.negated()
+
+    def not_compared_with_value(self, left: Number, sign: str, right: Number) -> State | None:
+        state = self.compared(left, sign, right) if "value_at(" in right.text else None
+        return None if state is None else state.negated()
+
+    def more_than_at(self, term: Term, moment: State) -> State | None:
+        return self.compared_with_value_at(term, ">", moment)
+
+    def less_than_at(self, term: Term, moment: State) -> State | None:
+        return self.compared_with_value_at(term, "<", moment)
+
+    def as_at(self, sign: str, term: Term, moment: State) -> State | None:
+        return self.compared_with_value_at(term, sign, moment)
+
+    def as_many_as_at(self, term: Term, moment: State) -> State | None:
+        return self.compared_with_value_at(term, ">=", moment)
+
+    def equal_to_value_at(self, term: Term, moment: State) -> State | None:
+        return self.compared_with_value_at(term, "==", moment)
+
+    def returned(self, term: Term, moment: State) -> State | None:
+        """Return the condition of `hp is back to what it was when the fight began`."""
+        state = self.equal_to_value_at(term, moment)
+        if state is not None:
+            self.returning[state.text] = moment
+        return state
+
+    def near_value_at(self, term: Term, step: Number, *rest: Term | State) -> State | None:
+        moment = rest[-1]
+        assert isinstance(moment, State)
+        value = self.value_at_last(term, moment)
+        if value is None or any(isinstance(part, Term) and part.text != term.text for part in rest):
+            return None
+        return comparison(Number(f"abs({term.text} - {value.text})", term), "<=", step)
+
+    def value_after_event(self, term: Term, event: Term, sign: str | Term, own: Term) -> _Found:
+        """Return the rule of `score after the level >= score when it began`."""
+        begun_ = State(f"begins {event.text}")
+        state = self.compared_with_value_at(term, sign, begun_) if own.text == term.text else None
+        return None if state is None else Reading((f"keep ends {event.text} implies {state.at(OR)}",))
 
     def highest(self, term: Term) -> Number:
         return Number(f"highest({term.text})", term)

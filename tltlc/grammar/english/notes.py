@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from math import ceil, floor
-from typing import Final
+from typing import Final, TypeGuard
 
 from tltlc.core.source import SourceFile
 from tltlc.grammar import lalr
@@ -23,6 +23,16 @@ _BEGINNINGS: Final = (
 """Words about a moment, which a state that lasts has only one of."""
 _AWAITING: Final = ("F", "X", "U", "M", "then", "within")
 """The operators that ask for something that may come later."""
+
+
+_OF_CALLS: Final = {
+    "times": "`{call}` counts how often `{0}` begins: steps in a row count once",
+    "times_since": "`{call}` counts how often `{0}` begins; each step with `{1}` begins a new count, "
+    "in which it counts",
+    "total_time": "`{call}` adds up the stretches with `{0}`, each from 0 s at its first step",
+    "value_at": "`{call}` is the value at the first step until the first step with `{1}`",
+}
+"""What the functions of the trace so far are, where a reader may expect something else."""
 _MOST_STEPS: Final = 100
 """With more steps, one more or less is hardly noticed."""
 
@@ -42,14 +52,15 @@ def notes(clauses: str, names: DeclaredNames, typed: str) -> tuple[str, ...]:
 
 def _notes(expression: Expr, source: SourceFile, step_s: float) -> Iterator[tuple[str, tuple[str, ...]]]:
     """Yield each note of an expression, and the words with which a writer has said so already."""
+    events = {id(call.arguments[1].value) for call in parts(expression) if _is_since(call)}
     for part in parts(expression):
-        if isinstance(part, CallExpr) and part.name == "times":
-            inner = source.slice(part.arguments[0].span)
-            yield (
-                f"`{source.slice(part.span)}` counts how often `{inner}` begins: steps in a row count once",
-                ("times(",),
-            )
-        elif isinstance(part, Unary) and part.op == "begins":
+        if isinstance(part, CallExpr):
+            arguments = [source.slice(argument.span) for argument in part.arguments]
+            note = _OF_CALLS.get(part.name, "")
+            if note and not (part.name == "value_at" and _is_after_event(part, source)):
+                call = source.slice(part.span)
+                yield note.format(*arguments, call=call), (f"{part.name}(",)
+        elif isinstance(part, Unary) and part.op == "begins" and id(part) not in events:
             inner = source.slice(part.operand.span)
             yield f"`begins {inner}` holds only at the first step of `{inner}`, and not at those after it", _BEGINNINGS
         elif isinstance(part, Unary) and part.op == "G" and part.bound is not None and part.bound.words:
@@ -78,6 +89,19 @@ def _is_next_state(answer: Expr) -> bool:
     if not isinstance(answer, Unary) or answer.op != "X" or answer.bound is not None:
         return False
     return not any(isinstance(part, (Unary, BinaryExpr)) and part.op in _AWAITING for part in parts(answer.operand))
+
+
+def _is_since(expression: Expr) -> TypeGuard[CallExpr]:
+    """Whether an expression is a function of an event: `times_since(p, q)`, `value_at(x, q)`."""
+    if not isinstance(expression, CallExpr):
+        return False
+    return expression.name in ("times_since", "value_at") and len(expression.arguments) > 1
+
+
+def _is_after_event(call: CallExpr, source: SourceFile) -> bool:
+    """Whether a value at an event is asked for only after that event: `a implies x >= value_at(x, begins a)`."""
+    event = source.slice(call.arguments[1].span).removeprefix("begins ").strip("()")
+    return any(f"{before}{event} implies " in source.text for before in ("keep ", "keep ends ", "keep begins "))
 
 
 def _is_held(expression: Expr) -> bool:

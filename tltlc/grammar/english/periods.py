@@ -1,74 +1,361 @@
-"""What rules about periods mean: how often something happens since an event, or in each mode."""
+"""What rules about periods mean: how often something happens since an event or in each wave, and by how much."""
 
 from __future__ import annotations
 
+import re
+from math import ceil
 from typing import Final
 
-from tltlc.grammar.english.events import Counted, Event
-from tltlc.grammar.english.intervals import Intervals
-from tltlc.grammar.english.quantities import Change, Duration, Number
-from tltlc.grammar.english.rules import Reading, begun_text
+from tltlc.core.record import replace
+from tltlc.grammar.english.answers import Asked, is_negative
+from tltlc.grammar.english.differences import Differences, Period
+from tltlc.grammar.english.events import Counted, Event, as_state
+from tltlc.grammar.english.intervals import Span
+from tltlc.grammar.english.quantities import IT, Duration, begun, counted_by
+from tltlc.grammar.english.rules import Reading, When, begun_text
 from tltlc.grammar.english.terminals import Term
-from tltlc.grammar.mistakes.sentences.states import AND, ATOM, State, joined
+from tltlc.grammar.mistakes.sentences.states import AND, ATOM, OR, State, joined
+from tltlc.grammar.mistakes.sentences.vocabulary import NEGATED_SIGN
 
-_MOST_COUNTED: Final = 3
-"""The most events of a period that a clause counts."""
+_MOST_TOTAL: Final = 6
+"""The most steps of a total of which a clause counts each."""
+_LONGEST_TOTAL: Final = "1 h"
+"""The maximum of a time in total that is compared with its value at an event."""
+_COMPARED: Final = re.compile(r"(times\(.*\)) (<=|<|>=|>) (\d+)")
+_ORDINALS: Final = {"2": "second", "3": "third", "4": "fourth", "5": "fifth"}
+_WHILE: Final = ("while", "as long as", "when")
 
 _Found = Reading | list[Reading] | None
 
 
-class Periods(Intervals):
+class Periods(Differences):
     """The meanings of the rules about what happens since an event, or in each period of its kind."""
+
+    # What is counted.
+
+    def times_compared(self, times: Term, sign: Term, number: Term) -> Counted | None:
+        """Return what `times(p) <= 2` counts."""
+        counted = counted_by(times)
+        return None if counted is None else Counted(counted, sign.text, number.text)
+
+    def most_behind(self, number: Term, term: Term) -> Counted:
+        return Counted(State(term.text), "<=", number.text)
+
+    def count_behind(self, state: State | Term, sign: str, number: str | Term) -> Counted:
+        counted = State(state.text) if isinstance(state, Term) else state
+        return Counted(counted, sign, number.text if isinstance(number, Term) else number)
+
+    def counted_since(self, state: State, *rest: str | State) -> State | None:
+        sign, number = rest[0] if len(rest) > 2 else ">=", rest[-2]
+        event = rest[-1]
+        assert isinstance(sign, str) and isinstance(number, str) and isinstance(event, State)
+        return _times_since(Counted(state, sign, number), event)
+
+    def counted_first_since(self, *parts: str | Term | State) -> State | None:
+        *sign, number, state, event = parts
+        assert not isinstance(state, str) and isinstance(event, State)
+        text = number if isinstance(number, str) else number.text
+        return self.counted_since(State(state.text), *(part for part in sign if isinstance(part, str)), text, event)
+
+    # Since an event.
 
     def count_since(self, counted: Counted, event: State) -> _Found:
         """Return the rule of `at most 2 jumps since landed`: the count begins anew at each step with the event."""
-        reading = self._counted(counted, event, is_while=False)
-        return None if reading is None else Reading(reading.clauses)
+        return _limited_since(counted, event)
 
-    def times_since(self, times: Term, event: State, sign: Term, number: Term) -> _Found:
-        counted = _counted(times, sign.text, number)
-        return None if counted is None else self.count_since(counted, event)
+    def since_count(self, event: State, counted: Counted) -> _Found:
+        return self.count_since(counted, event)
 
-    def count_in_each(self, counted: Counted, period: State) -> _Found:
-        """Return the readings of `at most 2 pings per dive`: each step with it may begin a period, or all be one."""
-        is_edge = period.text.startswith(("begins ", "ends "))
-        since = None if " is " in period.text else self._counted(counted, period, is_while=False)
-        during = None if is_edge else self._counted(counted, period, is_while=True)
-        readings = [reading for reading in (since, during) if reading is not None]
-        return Reading(readings[0].clauses) if len(readings) == 1 else readings or None
+    def bool_since(self, term: Term, event: State, sign: Term, number: Term) -> _Found:
+        return self.count_since(Counted(State(term.text), sign.text, number.text), event)
 
-    def times_in_each(self, times: Term, sign: Term, number: Term, period: State) -> _Found:
-        counted = _counted(times, sign.text, number)
-        return None if counted is None else self.count_in_each(counted, period)
+    def avoid(self, event: Event) -> _Found:
+        if isinstance(event, State) and event.text.startswith(("times_since(", "total_time(")):
+            return Reading((f"keep {event.negated().text}",))
+        return super().avoid(event)
 
-    def _counted(self, counted: Counted, event: State, *, is_while: bool) -> Reading | None:
-        number = int(counted.number) - (counted.sign == "<") if counted.number.isdecimal() else 0
-        if counted.sign not in ("<=", "<") or number < 1 or max(counted.state.level, event.level) > ATOM:
+    def avoid_count_since(self, counted: Counted, event: State) -> _Found:
+        avoided = _avoided(counted)
+        return None if avoided is None else self.count_since(avoided, event)
+
+    # In each period.
+
+    def count_in_each(self, counted: Counted, period: Period) -> _Found:
+        """Return the readings of `at most 2 pings per dive`: from each beginning on, or only while it holds."""
+        rule = _limited_since(counted, period.event)
+        if rule is None or counted.sign not in ("<=", "<"):
+            return self._least_in_each(counted, period)
+        if period.state is None:
+            return rule
+        inside = _while(counted, period.state)
+        if " is " in period.state.text or inside is None:
+            return inside and Reading(inside.clauses)
+        return [
+            replace(rule, condition=f"if each `{period.event.text}` begins a new count"),
+            replace(inside, condition=f"if it counts only while `{period.state.text}` holds"),
+        ]
+
+    def _least_in_each(self, counted: Counted, period: Period) -> _Found:
+        """Return the rule of `at least 2 pings per dive`, which is asked for where the period ends."""
+        state = _times_since(counted, period.event)
+        if state is None or counted.sign not in (">=", ">", "=="):
             return None
-        if number > _MOST_COUNTED:
+        if period.state is None:
+            start = period.event.at(OR)
+            if "previous(" not in start:  # which holds only where a period has ended
+                start = f"{period.event.at(AND)} and previously once {period.event.at(ATOM)}"
+            return Reading((f"keep {start} implies previously ({state.text})",))
+        return Reading((f"keep ends {period.state.at(ATOM)} implies previously ({state.text})",))
+
+    def most_in_each(self, number: Term, term: Term, period: Period) -> _Found:
+        return self.count_in_each(Counted(State(term.text), "<=", number.text), period)
+
+    def in_each_count(self, period: Period, counted: Counted) -> _Found:
+        return self.count_in_each(counted, period)
+
+    def avoid_count_in_each(self, counted: Counted, period: Period) -> _Found:
+        avoided = _avoided(counted)
+        return None if avoided is None else self.count_in_each(avoided, period)
+
+    # While something holds.
+
+    def count_while(self, counted: Counted, when: When, event: Event) -> _Found:
+        state = as_state(event)
+        if state is None or when not in (*_WHILE, "each") or state.level > ATOM:
+            return None
+        if when == "each":
+            period = self.stretch_of(state)
+            return None if period is None else self.count_in_each(counted, period)
+        one = joined([State(f"({begun_text(counted.state)})"), state], "and")
+        together = self.limit_count(Counted(one, counted.sign, counted.number))
+        inside = _while(counted, state)
+        if not isinstance(together, Reading) or inside is None:
+            return None
+        return [
+            replace(inside, condition=f"if each `{state.text}` begins a new count"),
+            replace(together, condition=f"if all steps with `{state.text}` count together"),
+        ]
+
+    def while_count(self, when: When, event: Event, counted: Counted) -> _Found:
+        return self.count_while(counted, when, event)
+
+    def count_in(self, counted: Counted, state: State) -> _Found:
+        return self.count_while(counted, "while", state)
+
+    def avoid_count_in(self, counted: Counted, state: State) -> _Found:
+        return self.avoid_count_while(counted, "while", state)
+
+    def last(self, answers: list[Asked], when: When, event: Event) -> _Found:
+        """Return the readings of `times(hit) <= 3 while airborne`; changes are rules, and no goals."""
+        text = answers[0].answer.state.text
+        found = super().last(answers, when, event)
+        if not isinstance(found, list) or when != "while":
+            return found
+        if text.startswith("times(") and (compared := _COMPARED.fullmatch(text)) and not answers[1:]:
+            counted = self.times_compared(
+                Term("INT", compared[1]), Term("SIGN", compared[2]), Term("NUMBER", compared[3])
+            )
+            return None if counted is None else self.count_while(counted, when, event)
+        is_change = "previous(" in text or "value_at(" in text
+        return [reading for reading in found if not (is_change and reading.clauses[0].startswith("reach "))]
+
+    def times_while(self, times: Term, state: State, sign: Term, number: Term) -> _Found:
+        counted = self.times_compared(times, sign, number)
+        return None if counted is None else self.count_while(counted, "while", state)
+
+    def avoid_count_while(self, counted: Counted, when: When, event: Event) -> _Found:
+        avoided = _avoided(counted)
+        return None if avoided is None else self.count_while(avoided, when, event)
+
+    # One of several.
+
+    def four(self) -> str:
+        return "4"
+
+    def five(self) -> str:
+        return "5"
+
+    def each_nth(self, number: str, term: Term, state: State) -> None:
+        self.limits.append(
+            f"no clause can say what holds at each {_ORDINALS[number]} `{term.text}`: let the game count, and supply "
+            f"the number; `times({term.text}) == {number}` is about one of play, "
+            f"`times_since({term.text}, q) == {number}` about one since each `q`"
+        )
+
+    # Up to an event.
+
+    def count_until(self, counted: Counted, end: State) -> _Found:
+        """Return the readings of `at least 3 pings before a dive`: from the first step on, or from the last dive."""
+        if counted.sign not in (">=", ">") or _times_since(counted, end) is None or is_negative(end):
+            return None
+        since = _times_since(counted, begun(end))
+        assert since is not None
+        first = f"keep {end.at(OR)} implies times({counted.state.text}) {counted.sign} {counted.number}"
+        return [
+            Reading((first,), "if it counts from the first step on"),
+            Reading((f"keep {begun(end).at(OR)} implies previously ({since.text})",),
+                    f"if each `{begun(end).text}` begins a new count"),
+        ]  # fmt: skip
+
+    def count_from_to(self, counted: Counted, end: State, start: State) -> _Found:
+        return self.count_between(counted, Span(start, end))
+
+    def count_between(self, counted: Counted, span: Span) -> _Found:
+        """Return the rule of `at most 2 jumps between two landings`; each one begins a new count."""
+        start, end = begun(span.start), span.end
+        state, number = _times_since(counted, start), counted.number
+        if state is None or max(span.start.level, end.level) > ATOM or is_negative(start) or is_negative(end):
+            return None
+        if span.start.text != end.text:
+            inside = f"(not {end.at(ATOM)} since {start.at(ATOM)})"
+            if counted.sign in ("<=", "<"):
+                return Reading((f"keep {inside} implies {state.text}",))
+            if number == "1":
+                return super().count_between(counted, span)
+            return Reading((f"keep {begun(end).at(AND)} and previously {inside} implies previously ({state.text})",))
+        if counted.sign in ("<=", "<"):
+            return _limited_since(counted, end)
+        so_far = span.start.at(ATOM).removeprefix("begins ")
+        at_next = f"keep {start.at(AND)} and previously once {so_far} implies previously ({state.text})"
+        if counted.sign != "==":
+            return Reading((at_next,))
+        most = _times_since(replace(counted, sign="<="), start)
+        assert most is not None
+        return Reading((at_next, f"keep once {so_far} implies {most.text}"))
+
+    # In total.
+
+    def total(self, state: State, sign: str, duration: Duration) -> _Found:
+        """Return the rule of `seen at most 30 s in total`; for a few steps, also the one that counts each step."""
+        if duration.is_steps and float(duration.number) > _MOST_TOTAL:
             self.limits.append(
-                f"no clause can say that `{counted.state.text}` happens at most {number} times since `{event.text}`: "
-                f"let the game count since then, and supply the number"
+                f"no clause can say at how many steps `{state.text}` holds in total, only for how long: "
+                f"`keep total_time({state.text}) <= 5 s`"
             )
             return None
-        begun = State(begun_text(counted.state))
-        going_on = event if is_while else event.negated()
-        one = joined([begun, going_on], "and")
-        seen = one if is_while else begun
-        for _ in range(number):
-            seen = State(f"{one.at(AND)} and previously ({going_on.at(ATOM)} since {seen.at(ATOM)})", AND)
-        condition = (
-            f"if it counts while `{event.text}` holds" if is_while else f"if each `{event.text}` begins a new count"
-        )
-        return Reading((f"avoid {seen.text}",), condition)
+        if duration.is_steps:
+            return super().total(state, sign, duration)
+        if sign not in ("<=", "<", ">=", ">") or state.level > AND:
+            return None
+        keyword = "keep" if sign in ("<=", "<") else "reach"
+        whole = Reading((f"{keyword} total_time({_without_brackets(state.text)}) {sign} {duration.text}",))
+        steps = round(self.steps(duration), 6)
+        if is_negative(state) and keyword == "reach":
+            denied = f"keep total_time({state.negated().text}) {NEGATED_SIGN[sign]} {duration.text}"
+            return [
+                replace(whole, condition=f"for the time with `{state.text}`"),
+                Reading((denied,), f"for that with `{state.negated().text}`"),
+            ]
+        if keyword == "reach" or not 0 < steps <= _MOST_TOTAL:
+            return whole
+        number = int(steps) if sign == "<=" else ceil(steps) - 1
+        return [
+            replace(whole, condition="if the first step of each stretch counts 0 s"),
+            Reading((f"avoid {' then '.join([state.at(OR)] * (number + 1))}",), "if each step counts"),
+        ]
 
-    def change_since(self, term: Term, change: Change, *rest: str | Number | State) -> None:
-        event = rest[-1]
-        assert isinstance(event, State)
-        self.value_at(term, Term("BOOL", event.text))
+    def total_reached(self, state: State, duration: Duration) -> _Found:
+        return self.total(state, ">=", duration)
 
-    def value_at_state(self, term: Term, event: State) -> None:
-        self.value_at(term, Term("BOOL", event.text))
+    def total_held(self, state: State, *rest: str | Duration) -> State | None:
+        sign, duration = rest[0] if len(rest) > 1 else ">=", rest[-1]
+        if not isinstance(duration, Duration) or duration.is_steps or not isinstance(sign, str):
+            return None
+        total = f"total_time({state.text})"
+        return State(f"{total} {sign} {duration.text}", ATOM, f"{total} {NEGATED_SIGN[sign]} {duration.text}")
+
+    def total_first(self, sign: str, duration: Duration, state: State) -> _Found:
+        return self.total(state, sign, duration)
+
+    def time_limit(self, term: Term, sign: str | Term, duration: Duration) -> _Found:
+        """Return the readings of `time in the zone at most 30 s`: of each stretch, or of all of them."""
+        operator = sign if isinstance(sign, str) else sign.text
+        total = self.total(State(term.text), operator, duration)
+        if operator not in ("<=", "<") or not isinstance(total, (Reading, list)):
+            return total
+        whole = total if isinstance(total, Reading) else total[0]
+        return [
+            replace(whole, condition="for all stretches together"),
+            Reading((f"keep time_holding({term.text}) {operator} {duration.text}",), "for each stretch"),
+        ]
+
+    def total_while(self, state: State, sign: str | Term, duration: Duration, during: State) -> _Found:
+        """Return the rule of `seen at most 9 s in total during storm`, for all storms together."""
+        operator = sign if isinstance(sign, str) else sign.text
+        both = joined([state, during], "and")
+        total = self.total(both, operator, duration) if both.level <= AND else None
+        whole = total[0] if isinstance(total, list) else total
+        period = self.stretch_of(during)
+        each = None if period is None else self.total_in_each(state, operator, duration, period)
+        if whole is None or each is None:
+            return whole
+        return [
+            replace(whole, condition=f"if all steps with `{during.text}` count together"),
+            replace(each, condition=f"if each `{during.text}` counts anew"),
+        ]
+
+    def total_time_while(self, state: State, during: State, sign: str | Term, duration: Duration) -> _Found:
+        return self.total_while(state, sign, duration, during)
+
+    def total_in_each(self, state: State, sign: str, duration: Duration, period: Period) -> Reading | None:
+        """Return the rule of `seen at most 9 s in total per storm`: by how much the time in total has grown."""
+        if sign not in ("<=", "<") or duration.is_steps:
+            return None
+        total = f"total_time({state.text}, {_LONGEST_TOTAL})"
+        inside = "" if period.state is None else f"{period.state.at(OR)} implies "
+        clause = f"keep {inside}{total} - value_at({total}, {period.event.text}) {sign} {duration.text}"
+        return Reading((clause,), f"if `{state.text}` holds for at most {_LONGEST_TOTAL} of all play")
+
+    def time_in_each(self, state: State, sign: str, duration: Duration, period: Period) -> _Found:
+        total = self.total_in_each(state, sign, duration, period)
+        if total is None:
+            return None
+        inside = "" if period.state is None else f"{period.state.at(OR)} implies "
+        each = f"keep {inside}time_holding({state.text}) {sign} {duration.text}"
+        return [
+            replace(total, condition=f"for all stretches with `{state.text}` together"),
+            Reading((each,), "for each stretch"),
+        ]
+
+    def time_first_in_each(self, sign: str, duration: Duration, state: State, period: Period) -> _Found:
+        return self.time_in_each(state, sign, duration, period)
+
+    # Answers to what happens so often.
+
+    def number_counted(self, number: Term, term: Term) -> Counted:
+        return Counted(State(term.text), "", number.text)
+
+    def first(self, when: When, event: Event, answers: list[Asked]) -> _Found:
+        if isinstance(event, Counted):
+            return self._after_several(when, event, answers)
+        if not isinstance(event, State):
+            return super().first(when, event, answers)
+        event, named = self._of_it(when, event, answers)
+        return super().first(when, event, named)
+
+    def _of_it(self, when: When, event: State, answers: list[Asked]) -> tuple[State, list[Asked]]:
+        """Return the event of a rule, and the answers with its name for `it`, which may have begun and ended."""
+        base = event.text.removeprefix("ends ").removeprefix("begins ")
+        named = [
+            replace(asked, answer=replace(asked.answer, state=_with_name(asked.answer.state, base)))
+            for asked in answers
+        ]
+        is_own = any(f", begins {base})" in asked.answer.state.text and not asked.is_formula for asked in named)
+        return (State(f"ends {base}") if is_own and when == "after" and base == event.text else event), named
+
+    def _after_several(self, when: When, event: Counted, answers: list[Asked]) -> _Found:
+        """Return the readings of `when jump twice, land within 5 s`: each time, or once."""
+        answer = answers[0].answer
+        is_clear = event.sign in ("", ">=") and event.number != "1" and when != "while"
+        again = _times_since(replace(event, sign=">="), answer.state)
+        if not is_clear or answers[1:] or answer.kind != "within" or again is None or is_negative(answer.state):
+            return super().first(when, event, answers)
+        asked = f"eventually within {answer.time} {answer.state.at(ATOM)}"
+        return [
+            Reading((f"keep {again.text} implies {asked}",), f"if each `{answer.state.text}` begins a new count"),
+            Reading((f"keep begins (times({event.state.text}) >= {event.number}) implies {asked}",),
+                    "if it counts from the first step on, and asks for it once"),
+        ]  # fmt: skip
 
     # Goals and rules with a second event.
 
@@ -96,10 +383,45 @@ class Periods(Intervals):
         ]
 
 
-def _counted(times: Term, sign: str, number: Term) -> Counted | None:
-    """Return what `times(p) <= 2` counts."""
-    name, bracket, inner = times.text.partition("(")
-    if name != "times" or not bracket:
+def _times_since(counted: Counted, event: State) -> State | None:
+    """Return the comparison of how often something has begun since an event; None if it always holds, or never."""
+    sign, number = counted.sign or ">=", counted.number
+    is_trivial = (sign, number) in ((">=", "0"), ("<", "0"), ("<", "1"), ("<=", "0"))
+    if not number.isdecimal() or is_trivial or is_negative(counted.state) or counted.state.text == event.text:
         return None
-    text = inner[:-1].strip()
-    return Counted(State(text if text.isidentifier() else f"({text})"), sign, number.text)
+    count = f"times_since({_without_brackets(counted.state.text)}, {_without_brackets(event.text)})"
+    return State(f"{count} {sign} {number}", ATOM, f"{count} {NEGATED_SIGN[sign]} {number}")
+
+
+def _without_brackets(text: str) -> str:
+    """Return a condition without brackets around the whole of it."""
+    inner = text[1:-1]
+    is_whole = text.startswith("(") and text.endswith(")") and inner.find("(") <= inner.find(")")
+    return inner if is_whole and inner.count("(") == inner.count(")") else text
+
+
+def _limited_since(counted: Counted, event: State) -> Reading | None:
+    state = _times_since(counted, event)
+    keyword = {"<=": "keep", "<": "keep", ">=": "reach", ">": "reach"}.get(counted.sign)
+    return None if state is None or keyword is None else Reading((f"{keyword} {state.text}",))
+
+
+def _while(counted: Counted, during: State) -> Reading | None:
+    """Return the rule about how often something happens in each stretch of steps with a condition."""
+    state = _times_since(counted, begun(during))
+    if state is None or counted.sign not in ("<=", "<", ">=", ">"):
+        return None
+    if counted.sign in ("<=", "<"):
+        return Reading((f"keep {during.at(OR)} implies {state.text}",))
+    return Reading((f"reach {during.at(AND)} and {state.text}",))
+
+
+def _avoided(counted: Counted) -> Counted | None:
+    """Return what the opposite of a count at least so high counts."""
+    sign = {">": "<=", ">=": "<", "": "<"}.get(counted.sign)
+    return None if sign is None else replace(counted, sign=sign)
+
+
+def _with_name(state: State, name: str) -> State:
+    """Return a condition with the name of an event for `it`."""
+    return State(state.text.replace(IT, name), state.level, state.opposite.replace(IT, name))

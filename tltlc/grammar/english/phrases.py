@@ -28,7 +28,27 @@ PHRASES: Final[Mapping[str, str]] = {
     "unless": "unless|except when|except if|except while|except during|except|unless when",
     "only_when": "only with|only if|only when|only while|only whenever|only during|only as long as|only at|only in",
     "per": "per|in each|in every|each|every|for each|for every|during each|within each|"
-    "during every|in any|within|between",
+    "during every|in any|within|between|in one|in single|in same|during one|during single|within one|within single|"
+    "throughout each|over each|for one|from one|of each|of every|in any one|within any|during any",
+    "during_one": "per|in each|in every|each|every|for each|for every|during each|within each|during every|in any|"
+    "in one|in single|in same|during one|during single|within one|within single|throughout each|over each|within any|"
+    "during any|over one|over whole|in whole|during whole",
+    "in": "in|during|while|within|throughout|over",
+    "lose": "lose|loses|lose more|drop|drops",
+    "gain": "gain|gains|earn|earns|get|gets|collect|score",
+    "returns": "returns to|return to|is back to|is back at|goes back to|comes back to|is restored to|is reset to|"
+    "is set back to|gets back to|back to|must be back at|falls back to|returns|resets to",
+    "its_value": "what was|its value|value|was|where was|value was|what had been|as high as was|that|what has been|"
+    "its value was|level",
+    "same_as": "same as|equal to|equals|exactly|is same as|is equal to|must be same as|has same value as",
+    "stay_within": "stays within|stay within|is within|remains within|remain within|must stay within|must be within|"
+    "within|be within|must remain within",
+    "at_end_of": "at end of|when end of",
+    "total_time": "total time|total time of|total time in|total time spent|total time spent in|total duration|"
+    "total duration of|total|cumulative time|cumulative time in|overall time|total of|accumulated time|"
+    "accumulated time in|sum of time|time in total|total time with|total time on|total amount of time|"
+    "cumulative duration of",
+    "time_spent": "time spent|time spent in|time in|time of|time with|time",
     "needs": "requires|needs|depends on",
     "only_after": "only after|only once|not before|not until|comes after|happens after|only happens after",
     "iff": "iff|if and only if|exactly when|exactly if|exactly while",
@@ -55,7 +75,9 @@ PHRASES: Final[Mapping[str, str]] = {
     "lasts": "lasts|last|must last|should last|has to last|shall last|always lasts|must always last|needs to last|"
     "takes|must take|stays on|lasts for|holds for|holds",
     "each": "each|every|any",
-    "for": "for|for the next|for a full|for a total of|for next|for at least|at least for|for the following",
+    "for_total": "for a total of|for a total time of|for a combined",
+    "spend": "spend|spends|be",
+    "for": "for|for the next|for a full|for next|for at least|at least for|for the following",
     "for_last": "for last|for previous|throughout last|during last|over last|for whole last|for at least last|for past",
     "within": "within|in|by|in under|in less than|in at most|in no more than|no later than|within at most|inside|"
     "in the next|within the next|in next|within next|not later than|under",
@@ -133,12 +155,16 @@ PHRASES: Final[Mapping[str, str]] = {
     "is_not": "is not|isn't|not|not in|not at|is not in|is not at|does not equal|differs from|is other than|"
     "must not be|should not be|must not equal|cannot be|can't be|may not be|mustn't be|shouldn't be",
     "earlier": "before|earlier|ago|beforehand|before that",
-    "in_total": "in total|total|altogether|overall|in all|in sum",
+    "in_total": "in total|total|altogether|overall|in all|in sum|in whole run|in whole game|in entire run|"
+    "in entire game|cumulative|cumulatively|over whole run|over whole game|over entire run|over entire game|"
+    "during whole run|during whole game|in whole level|over whole level|all in all|all together|summed up|added up|"
+    "combined|accumulated|throughout whole run|throughout whole game|in whole episode|over whole episode|"
+    "across whole run|across whole game|per game|per run|per episode",
     "falls_below": "falls below|drops below|goes below|drops under|falls under",
     "rises_above": "rises above|goes above|goes over",
     "is_never": "is never|never",
-    "when_it": "at start of|at beginning of|at end of|at last|"
-    "at|when|on|from|as of|since|during|at time of|at moment of|before",
+    "when_it": "at start of|at beginning of|at|when|on|from|as of|since|at time of|at moment of|at step of|"
+    "as when|than when|than at|than at start of|as at|as at start of",
     "at_least_every": "at least every|at least once every|at least once each|at least once in every|"
     "at least once in any|at least once per|at least once within any|at least one time every|no less often than every|"
     "every|at least once in each|not less often than every",
@@ -161,7 +187,7 @@ PHRASES: Final[Mapping[str, str]] = {
     "switch to|"
     "enters|enter|is set to|gets|moves to|changes into|reaches|starts being|turned|became",
     "leaves": "leaves|leave|stops being|exits|is left",
-    "begins": "begins|begin|starts|start|started|begun|triggers|is triggered|goes up|turns on|happens|appears|"
+    "begins": "begins|begin|began|starts|start|started|begun|triggers|is triggered|goes up|turns on|happens|appears|"
     "turns true",
     "begins_first": "begins|start of|beginning of|begin of|onset of",
     "ends": "is lost|lost|gets lost|ends|end|ended|stops|stop|stopped|is over|goes down|turns off|"
@@ -219,7 +245,7 @@ PHRASES: Final[Mapping[str, str]] = {
     "in_sequence": "consecutive|successive|next|another",
     "means": "means|means that|implies that",
     "count_of": "count|number of|number of times",
-    "duration_of": "duration|duration of|time_in|time in|time spent in|hold_time|length of|how long",
+    "duration_of": "duration|duration of|time_in|hold_time|length of|how long",
     "from_now": "later|from now|afterwards",
     "ago": "ago|earlier|before",
     "previous": "previous|prev|old|previous value of|last value of|last",

@@ -12,6 +12,10 @@ from tltlc.grammar.mistakes.sentences.vocabulary import NEGATED_SIGN
 
 MIRRORED: Final = {"<": ">", "<=": ">=", ">": "<", ">=": "<=", "==": "==", "!=": "!="}
 Change = Literal["falls", "rises", "stays", "varies"]
+IT: Final = "?"
+"""What stands in a clause for an event that is not known yet."""
+_FUNCTIONS: Final = ("times(", "times_since(", "total_time(", "time_holding(", "time_since(")
+"""The functions whose values are counts and times, which no clause keeps from an event on."""
 
 
 @record
@@ -72,6 +76,10 @@ class Quantities:
         """Whether the sentence says `stays`, `must` or `never`."""
         self.counts: set[str] = set()
         """The conditions of which `count(a)` may count the steps, or how often they begin."""
+        self.values: dict[str, tuple[str, State]] = {}
+        """Maps the value of a number at an event to the two: `value_at(x, begins a)` to x and `begins a`."""
+        self.returning: dict[str, State] = {}
+        """Maps the conditions of numbers that return to a value to the event at which they had it."""
         self.changing: set[str] = set()
         """The conditions that a number changes, which no first step meets."""
 
@@ -95,16 +103,27 @@ class Quantities:
     def previous(self, term: Term) -> Number:
         return Number(f"previous({term.text})", term)
 
-    def value_at(self, term: Term, event: Term) -> None:
-        if term.text.startswith("times("):
-            return  # a count since an event
-        self.limits.append(
-            f"no clause can say what `{term.text}` was at `{event.text}`: let the game supply that number as a signal, "
-            f"and compare `{term.text}` with it"
-        )
+    def value_at(self, term: Term, event: State) -> Number | None:
+        """Return the value of a number at the last beginning of a condition."""
+        return self.value_at_last(term, begun(event))
 
-    def value_when(self, term: Term, name: Term, value: Term) -> None:
-        self.value_at(term, Term("BOOL", f"{name.text} becomes {value.text}"))
+    def value_at_end(self, term: Term, event: State) -> Number | None:
+        return self.value_at_last(term, State(f"ends {event.at(ATOM)}"))
+
+    def value_at_last(self, term: Term, event: State) -> Number | None:
+        if event.text.startswith(("not ", "begins not ")) or term.text.startswith(_FUNCTIONS):
+            return None
+        text = f"value_at({term.text}, {event.text})"
+        self.values[text] = (term.text, event)
+        return Number(text, Term(term.kind, text, term.declared))
+
+    def is_of_another(self, left: Number, right: Number) -> bool:
+        """Whether one side is the value of a number at an event, and the other side is about other numbers alone."""
+        for one, other in ((left, right), (right, left)):
+            name = next((name for text, (name, _) in self.values.items() if text in one.text), "")
+            if name and other.term is not None and name not in other.text:
+                return True
+        return False
 
     def value_after(self, term: Term, duration: Duration) -> None:
         self.limits.append(
@@ -126,6 +145,26 @@ class Quantities:
 
     def duration_of(self, state: State) -> Number:
         return Number(f"time_holding({state.text})", Term("REAL", f"time_holding({state.text})"))
+
+    def total_of(self, state: State) -> Number:
+        return Number(f"total_time({state.text})", Term("REAL", f"total_time({state.text})"))
+
+    def total_of_bool(self, term: Term) -> Number:
+        return self.total_of(State(term.text))
+
+    def value_at_own(self, term: Term) -> Number | None:
+        """Return the value of a number when `it` began, which the condition of the rule names."""
+        return self.value_at_last(term, State(f"begins {IT}"))
+
+    def count_of_since(self, term: Term, event: State) -> Number | None:
+        return self.times_since(Term("INT", f"times({term.text})"), event)
+
+    def times_since(self, times: Term, event: State) -> Number | None:
+        counted = counted_by(times)
+        if counted is None:
+            return None
+        text = f"times_since({counted.text}, {event.text})"
+        return Number(text, Term("INT", text))
 
     def absolute(self, number: Number) -> Number | None:
         if number.term is None:
@@ -180,16 +219,16 @@ class Quantities:
     # Comparisons.
 
     def comparison(self, left: Number, sign: Term, right: Number) -> State | None:
-        return comparison(left, sign.text, right)
+        return None if self.is_of_another(left, right) else comparison(left, sign.text, right)
 
     def compared(self, left: Number, sign: str, right: Number) -> State | None:
-        return comparison(left, sign, right)
+        return None if self.is_of_another(left, right) else comparison(left, sign, right)
 
     def equal(self, left: Number, right: Number) -> State | None:
-        return comparison(left, "==", right)
+        return None if self.is_of_another(left, right) else comparison(left, "==", right)
 
     def unequal(self, left: Number, right: Number) -> State | None:
-        return comparison(left, "!=", right)
+        return None if self.is_of_another(left, right) else comparison(left, "!=", right)
 
     def chain(self, low: Number, first: Term, middle: Number, second: Term, high: Number) -> State | None:
         one, other = comparison(low, first.text, middle), comparison(middle, second.text, high)
@@ -241,6 +280,18 @@ class Quantities:
         return _change(now, MIRRORED[sign] if change == "falls" else sign, then)
 
 
+def begun(event: State) -> State:
+    """Return the beginning of a condition that may last; an edge or a change of a number is one itself."""
+    is_edge = event.text.startswith(("begins ", "ends ")) or "previous" in event.text
+    return event if is_edge else State(f"begins {event.at(ATOM)}")
+
+
+def counted_by(times: Term) -> State | None:
+    """Return what `times(p)` counts."""
+    name, bracket, inner = times.text.partition("(")
+    return State(inner[:-1].strip()) if name == "times" and bracket else None
+
+
 def comparison(left: Number, sign: str, right: Number) -> State | None:
     """Return a comparison in the language, which has no equality of real numbers; None of a number with itself."""
     if left.text == right.text:
@@ -255,7 +306,7 @@ def comparison(left: Number, sign: str, right: Number) -> State | None:
 
 
 def _equality(left: Number, sign: str, right: Number) -> State | None:
-    if any(side.text.startswith(("time_since(", "time_holding(")) for side in (left, right)):
+    if any(side.text.startswith(("time_since(", "time_holding(", "total_time(")) for side in (left, right)):
         return None  # a time may pass a value between two samples
     is_exact = all(side.is_int or side.term is None for side in (left, right)) and (left.is_int or right.is_int)
     if is_exact or (left.term is None and right.term is None):

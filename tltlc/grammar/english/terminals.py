@@ -18,8 +18,12 @@ _SIGNS: Final = {
     "RPAR": "_RPAR", "LBRACE": "_LBRACE", "RBRACE": "_RBRACE", "COMMA": "_COMMA", "COLON": "_COLON",
 }  # fmt: skip
 _TIME_UNITS: Final = ("s", "ms", "min", "h", "step", "steps")
-_COUNTS: Final = ("times",)
+_TOTALS: Final = ("total_time",)
+_COUNTS: Final = ("times", "times_since")
 _NUMBERS: Final = ("previous", "initial", "highest", "lowest", "time_since", "time_holding", "abs", "min", "max")
+_BEFORE_PERIODS: Final = ("in", "within", "during", "over", "from", "any", "for")
+_WHOLE: Final = ("whole", "entire")
+"""Words before a noun that stands for all of play, although it may be a value, too: `in the whole run`."""
 _LETTERS: Final = {"Y": "previously", "O": "once", "H": "historically", "S": "since"}
 """Maps the letters of logic for the past to words."""
 UNKNOWN: Final = "UNKNOWN"
@@ -33,7 +37,9 @@ _BEFORE_VALUES: Final = frozenset(
     for word in phrase.split()
 )
 """Words between an enum and its value."""
-CALLED: Final = frozenset("within after on when if next finally count duration cooldown abs time_in hold_time".split())
+CALLED: Final = frozenset(
+    "within after on when if next finally count duration cooldown abs time_in hold_time total".split()
+)
 """Words of the grammar that people write with brackets behind them, as functions."""
 
 
@@ -100,10 +106,12 @@ def _terms(words: Words, vocabulary: Mapping[str, str]) -> Iterator[Term]:
                 yield Term("_ARROW", "=>")
             elif not (word.type in ("LESS", "AT_MOST") and _is_time_limit(words, start)):
                 yield Term(_SIGNS[word.type], word.text)
-        elif word.text == "one" and words.word(at) == "of":
+        elif word.text == "one" and (words.word(at) == "of" or _is_article(words, start)):
             yield Term(vocabulary["one"], "one")
         elif number := words.number(start):
             yield Term("NUMBER", number)
+        elif words.word(start - 1) in _WHOLE and word.text in vocabulary:
+            yield Term(vocabulary[word.text], word.text)
         elif any(words[start:at].text in known.values for known in words.names.names.values()):
             yield Term("VALUE", words[start:at].text)
         elif start and words.number(start - 1) and (unit := _unit(word.text)) and word.text not in words.names.names:
@@ -126,6 +134,11 @@ def _is_value(words: Words, at: int) -> bool:
         before -= 1
     declared = words.declared(before)
     return declared is not None and declared.type == "enum" and words[at].text in declared.values
+
+
+def _is_article(words: Words, at: int) -> bool:
+    """Whether `one` stands for `a`: in `in one fight`, and not in `at most one fight`."""
+    return words.word(at - 1) in _BEFORE_PERIODS and at + 1 < len(words) and words[at + 1].is_name
 
 
 def _is_time_limit(words: Words, at: int) -> bool:
@@ -162,10 +175,12 @@ def _name(words: Words) -> Term | None:
             return Term("PREVIOUS_ENUM", inner.text, of)
         if name.startswith(("previous(", "initial(", "lowest(", "highest(")):
             return _value_of(words.names.names.get(name.partition("(")[2].rstrip(")")), text)
-        if name.startswith("times("):
+        if name.startswith("times(") or name in _COUNTS:
             return Term("INT", text)
-        if name in _COUNTS:
-            return Term("INT", text)
+        if name in _TOTALS:
+            return Term("REAL", text)
+        if name == "value_at":
+            return _value_of(words.declared(2), text)
         return _value_of(of, text) if name in _NUMBERS else Term("BOOL", text)
     if any(declared_inside.members for at in range(len(words)) if (declared_inside := words.declared(at))):
         return None  # a group, which stands for several values

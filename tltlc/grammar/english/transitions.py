@@ -8,7 +8,7 @@ from tltlc.grammar.english.quantities import Change, Number
 from tltlc.grammar.english.rules import Reading, Rules
 from tltlc.grammar.english.terminals import Term
 from tltlc.grammar.mistakes.sentences.answers import Answer
-from tltlc.grammar.mistakes.sentences.states import ATOM, OR, RULE, State
+from tltlc.grammar.mistakes.sentences.states import AND, ATOM, OR, RULE, State
 
 
 class Transitions(Rules):
@@ -39,7 +39,11 @@ class Transitions(Rules):
         if any(f"{sign} {of}(" in text for sign in "<>" for of in ("previous", "highest", "lowest")):
             return None  # the first step does not meet it
         keep, reach = Reading((f"keep {text}",), "for every step"), Reading((f"reach {text}",), "if it is a goal")
+        if "value_at(" in text:
+            return self._of_value(state)
         is_most = state.opposite in (text.replace("<=", ">"), text.replace("<", ">="))
+        if text.startswith(("times_since(", "total_time(")):
+            return replace(keep if is_most else reach, condition="")
         if text.startswith("times("):
             return replace(keep if is_most else reach, condition=self.count_condition(text))
         if "previous(" in text or "lowest(" in text or "highest(" in text or state.level == RULE or self.is_lasting:
@@ -47,6 +51,29 @@ class Transitions(Rules):
         if text.startswith("time_holding("):
             return replace(keep, condition="") if is_most else None
         return [reach, keep]
+
+    def _of_value(self, state: State) -> list[Reading]:
+        """Return the readings of a condition alone about the value of a number at an event."""
+        text = state.text
+        values = sorted((text.index(value), value) for value in self.values if value in text)
+        _, first = values[0]
+        term, event = self.values[first]
+        if len({self.values[value][1].text for _, value in values}) > 1 or event.text.startswith("ends "):
+            now = text.replace(first, term)
+            keep = Reading((f"keep {event.at(OR)} implies {now}",), f"for each step with `{event.text}`")
+            if event.text.startswith("ends "):
+                return [replace(keep, condition="")]
+            return [keep, Reading((f"reach {event.at(AND)} and {now}",), "if it is a goal")]
+        begun = event.text.removeprefix("begins ")
+        keep = Reading((f"keep {text}",), "for every step, before the first event compared with the first step")
+        if begun == event.text:
+            return [Reading((f"reach {text}",), "if it is a goal"), keep]
+        at_end = Reading((f"keep ends {begun} implies {state.at(OR)}",), f"if it is asked for where `{begun}` ends")
+        if text in self.returning:
+            later = f"keep begins {begun} implies next eventually {state.at(ATOM)}"
+            return [at_end, Reading((later,), "if at some step after it began")]
+        during = Reading((f"keep {begun} implies {state.at(OR)}",), f"for each step with `{begun}`")
+        return [during, at_end, keep]
 
     def stays_so(self, state: State) -> Reading:
         state = self.settled.get(state.text, state)

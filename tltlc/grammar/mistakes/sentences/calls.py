@@ -53,7 +53,7 @@ def _own(words: Words, at: int) -> tuple[int, list[Word]]:
         return counted
     if declared_so_far := _so_far(words, at):
         return declared_so_far
-    if text == "last" and words.word(at - 1) == "since":
+    if text == "last" and _is_of_event(words, at):
         return at + 1, [words[at]]
     is_call = at + 1 < len(words) and words[at + 1].text == "("
     stop = call_end(words, at)
@@ -70,6 +70,12 @@ def _own(words: Words, at: int) -> tuple[int, list[Word]]:
         name = "initial" if text in _FIRST else "previous"
         return stop, [_word(f"{name}({inner.text})", words[at], is_name=True)]
     return at + 1, [words[at]]
+
+
+def _is_of_event(words: Words, at: int) -> bool:
+    """Whether `last` is about an event: in `since the last alarm` and `gold at the last save`."""
+    before = at - 1 - (words.word(at - 1) in ("the", "my", "your"))
+    return words.word(before) in ("since", "at", "when", "from", "on")
 
 
 def _so_far(words: Words, at: int) -> tuple[int, list[Word]] | None:

@@ -18,6 +18,7 @@ from tltlc.grammar.mistakes.declared_names import declared_names
 from tltlc.grammar.mistakes.english_rewrite import REAL_TIME
 from tltlc.grammar.mistakes.parse_failure import ParseFailure
 from tltlc.grammar.mistakes.rephrasing import span_of
+from tltlc.grammar.mistakes.sentences.limits import counts_in_periods
 from tltlc.grammar.mistakes.sentences.names import is_imperative, with_names
 from tltlc.grammar.mistakes.sentences.reading import (
     KEYWORDS,
@@ -81,7 +82,7 @@ def _with_reading(
         return known  # the help says what to declare
     is_whole = bool(known.fixes) and is_mended(failure, known.fixes[0])
     words = sentence_words(failure)
-    is_english = words.find(_ENGLISH_ALONE) is not None
+    is_english = words.find(_ENGLISH_ALONE) is not None or any(map(counts_in_periods, (words, with_names(words))))
     if not is_english and (
         (is_whole and not _is_foreign(known.fixes[0], failure)) or _has_readings(failure, known.help or "")
     ):

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from tltlc.grammar.mistakes.sentences.kinds import is_event
+from typing import Final
+
+from tltlc.grammar.mistakes.sentences.kinds import is_bool, is_event
 from tltlc.grammar.mistakes.sentences.states import State, count_of, holding_of
 from tltlc.grammar.mistakes.sentences.vocabulary import (
     COMPARISONS,
@@ -13,7 +15,32 @@ from tltlc.grammar.mistakes.sentences.vocabulary import (
     PROHIBITIONS,
     SUBJECTS,
 )
-from tltlc.grammar.mistakes.sentences.words import Words
+from tltlc.grammar.mistakes.sentences.words import Words, phrases
+
+_OFTEN: Final = ("once", "twice", "thrice")
+_PERIODS: Final = phrases("per", "in each", "in every", "each", "every", "while", "during", "in one", "in a single")
+"""Words before what a count is about: a stretch of play that comes again."""
+_TOTALS: Final = phrases("total", "altogether", "overall")
+_EVENTS: Final = ("when", "whenever", "if", "after")
+
+
+def counts_in_periods(words: Words) -> bool:
+    """Whether a sentence counts in each of several periods or up to an event, or adds times up."""
+    if words.find(_TOTALS) is not None:
+        return True
+    return _counts(words) and (words.word(0) in _EVENTS or words.find(_PERIODS) is not None)
+
+
+def _counts(words: Words) -> bool:
+    for at, word in enumerate(words):
+        following = words.word(at + 1)
+        if word.text == "times" and following == "(":
+            return True
+        if at and word.text in _OFTEN:
+            return True
+        if words.number(at) and (following in ("times", "time") or (at + 1 < len(words) and is_bool(words, at + 1))):
+            return True
+    return False
 
 
 def bounded_count(words: Words) -> tuple[str, ...] | None:

@@ -177,7 +177,7 @@ def _brings(group: Words) -> bool:
 
 
 def _may_belong(group: Words, at: int) -> bool:
-    if group[at].is_name or group[at].type in ("NUMBER", "UNIT") or not group[at].text.isalpha():
+    if group[at].is_name or group[at].type == "UNIT" or group.number(at) or not group[at].text.isalpha():
         return False
     return group[at].text in _INSIDE or group[at].text not in (*ENGLISH, "up", "down", "goes", "go")
 
