@@ -1,0 +1,128 @@
+"""What rules about times in total mean: of all of play, or in each period of a kind."""
+
+from __future__ import annotations
+
+from math import ceil
+from typing import Final
+
+from tltlc.core.record import replace
+from tltlc.grammar.english.answers import is_negative
+from tltlc.grammar.english.differences import Differences, Period
+from tltlc.grammar.english.quantities import Duration
+from tltlc.grammar.english.rules import Reading
+from tltlc.grammar.english.terminals import Term
+from tltlc.grammar.mistakes.sentences.states import AND, ATOM, OR, State, joined
+from tltlc.grammar.mistakes.sentences.vocabulary import NEGATED_SIGN
+
+_MOST_TOTAL: Final = 6
+"""The most steps of a total of which a clause counts each."""
+_LONGEST_TOTAL: Final = "1 h"
+"""The maximum of a time in total that is compared with its value at an event."""
+
+_Found = Reading | list[Reading] | None
+
+
+class Totals(Differences):
+    """The meanings of the rules about times in total."""
+
+    def total(self, state: State, sign: str, duration: Duration) -> _Found:
+        """Return the rule of `seen at most 30 s in total`; for a few steps, also the one that counts each step."""
+        if duration.is_steps and float(duration.number) > _MOST_TOTAL:
+            self.limits.append(
+                f"no clause can say at how many steps `{state.text}` holds in total, only for how long: "
+                f"`keep total_time({state.text}) <= 5 s`"
+            )
+            return None
+        if duration.is_steps:
+            return super().total(state, sign, duration)
+        if sign not in ("<=", "<", ">=", ">") or state.level > AND:
+            return None
+        keyword = "keep" if sign in ("<=", "<") else "reach"
+        whole = Reading((f"{keyword} total_time({without_brackets(state.text)}) {sign} {duration.text}",))
+        steps = round(self.steps(duration), 6)
+        if is_negative(state) and keyword == "reach":
+            denied = f"keep total_time({state.negated().text}) {NEGATED_SIGN[sign]} {duration.text}"
+            return [
+                replace(whole, condition=f"for the time with `{state.text}`"),
+                Reading((denied,), f"for that with `{state.negated().text}`"),
+            ]
+        if keyword == "reach" or not 0 < steps <= _MOST_TOTAL:
+            return whole
+        number = int(steps) if sign == "<=" else ceil(steps) - 1
+        return [
+            replace(whole, condition="if the first step of each stretch counts 0 s"),
+            Reading((f"avoid {' then '.join([state.at(OR)] * (number + 1))}",), "if each step counts"),
+        ]
+
+    def total_reached(self, state: State, duration: Duration) -> _Found:
+        return self.total(state, ">=", duration)
+
+    def total_held(self, state: State, *rest: str | Duration) -> State | None:
+        sign, duration = rest[0] if len(rest) > 1 else ">=", rest[-1]
+        if not isinstance(duration, Duration) or duration.is_steps or not isinstance(sign, str):
+            return None
+        total = f"total_time({state.text})"
+        return State(f"{total} {sign} {duration.text}", ATOM, f"{total} {NEGATED_SIGN[sign]} {duration.text}")
+
+    def total_first(self, sign: str, duration: Duration, state: State) -> _Found:
+        return self.total(state, sign, duration)
+
+    def time_limit(self, term: Term, sign: str | Term, duration: Duration) -> _Found:
+        """Return the readings of `time in the zone at most 30 s`: of each stretch, or of all of them."""
+        operator = sign if isinstance(sign, str) else sign.text
+        total = self.total(State(term.text), operator, duration)
+        if operator not in ("<=", "<") or not isinstance(total, (Reading, list)):
+            return total
+        whole = total if isinstance(total, Reading) else total[0]
+        return [
+            replace(whole, condition="for all stretches together"),
+            Reading((f"keep time_holding({term.text}) {operator} {duration.text}",), "for each stretch"),
+        ]
+
+    def total_while(self, state: State, sign: str | Term, duration: Duration, during: State) -> _Found:
+        """Return the rule of `seen at most 9 s in total during storm`, for all storms together."""
+        operator = sign if isinstance(sign, str) else sign.text
+        both = joined([state, during], "and")
+        total = self.total(both, operator, duration) if both.level <= AND else None
+        whole = total[0] if isinstance(total, list) else total
+        period = self.stretch_of(during)
+        each = None if period is None else self.total_in_each(state, operator, duration, period)
+        if whole is None or each is None:
+            return whole
+        return [
+            replace(whole, condition=f"if all steps with `{during.text}` count together"),
+            replace(each, condition=f"if each `{during.text}` counts anew"),
+        ]
+
+    def total_time_while(self, state: State, during: State, sign: str | Term, duration: Duration) -> _Found:
+        return self.total_while(state, sign, duration, during)
+
+    def total_in_each(self, state: State, sign: str, duration: Duration, period: Period) -> Reading | None:
+        """Return the rule of `seen at most 9 s in total per storm`: by how much the time in total has grown."""
+        if sign not in ("<=", "<") or duration.is_steps:
+            return None
+        total = f"total_time({state.text}, {_LONGEST_TOTAL})"
+        inside = "" if period.state is None else f"{period.state.at(OR)} implies "
+        clause = f"keep {inside}{total} - value_at({total}, {period.event.text}) {sign} {duration.text}"
+        return Reading((clause,), f"if `{state.text}` holds for at most {_LONGEST_TOTAL} of all play")
+
+    def time_in_each(self, state: State, sign: str, duration: Duration, period: Period) -> _Found:
+        total = self.total_in_each(state, sign, duration, period)
+        if total is None:
+            return None
+        inside = "" if period.state is None else f"{period.state.at(OR)} implies "
+        each = f"keep {inside}time_holding({state.text}) {sign} {duration.text}"
+        return [
+            replace(total, condition=f"for all stretches with `{state.text}` together"),
+            Reading((each,), "for each stretch"),
+        ]
+
+    def time_first_in_each(self, sign: str, duration: Duration, state: State, period: Period) -> _Found:
+        return self.time_in_each(state, sign, duration, period)
+
+
+def without_brackets(text: str) -> str:
+    """Return a condition without brackets around the whole of it."""
+    inner = text[1:-1]
+    is_whole = text.startswith("(") and text.endswith(")") and inner.find("(") <= inner.find(")")
+    return inner if is_whole and inner.count("(") == inner.count(")") else text
