@@ -27,15 +27,14 @@ _MOST_STEPS: Final = 100
 
 def notes(clauses: str, names: DeclaredNames, typed: str) -> tuple[str, ...]:
     """Return what to know of clauses that stand for ``typed``: nothing of what stands there already."""
-    source = SourceFile("", f"spec s {{ {clauses} }}", "text")
-    lexed = tokenize(source.text)
-    try:
-        declarations: Sequence[Declaration] = lalr.run(load(), "module", lexed.tokens, Builder(source, lexed.docs))
-    except lalr.UnexpectedTokenError:
+    written = _written(clauses)
+    if written is None:
         return ()
-    written = (part for spec in declarations for part in expressions(spec))
-    all_notes = (note for part in written for note in _notes(part, source, names.step_s))
-    return tuple(dict.fromkeys(note for note, words in all_notes if not any(word in typed.lower() for word in words)))
+    source, declarations = written
+    formulas = (part for spec in declarations for part in expressions(spec))
+    all_notes = (note for part in formulas for note in _notes(part, source, names.step_s))
+    new = dict.fromkeys(note for note, words in all_notes if not any(word in typed.lower() for word in words))
+    return (*equality_notes(clauses, typed), *new)
 
 
 def _notes(expression: Expr, source: SourceFile, step_s: float) -> Iterator[tuple[str, tuple[str, ...]]]:
@@ -64,6 +63,40 @@ def _notes(expression: Expr, source: SourceFile, step_s: float) -> Iterator[tupl
             note = _of_time(part, source, step_s)
             if note:
                 yield note, ("time_holding",)
+
+
+def equality_notes(clauses: str, typed: str) -> tuple[str, ...]:
+    """Return why clauses have two comparisons of a number with fractions in place of the `==` of ``typed``."""
+    written = _written(clauses)
+    if written is None or "==" not in typed:
+        return ()
+    source, specs = written
+    formulas = (part for spec in specs for expression in expressions(spec) for part in parts(expression))
+    texts = dict.fromkeys(text for formula in formulas if (text := _equal_number(formula, source)))
+    return tuple(f"`{text}` has fractions, which `==` cannot compare: two comparisons say the same" for text in texts)
+
+
+def _equal_number(formula: Expr, source: SourceFile) -> str:
+    """Return a of `a >= b and a <= b`; "" for other formulas."""
+    if not isinstance(formula, BinaryExpr) or formula.op != "and":
+        return ""
+    left, right = formula.left, formula.right
+    if not (isinstance(left, BinaryExpr) and isinstance(right, BinaryExpr)) or (left.op, right.op) != (">=", "<="):
+        return ""
+    number, same, limit, same_limit = (
+        source.slice(side.span) for side in (left.left, right.left, left.right, right.right)
+    )
+    return number if (number, limit) == (same, same_limit) else ""
+
+
+def _written(clauses: str) -> tuple[SourceFile, Sequence[Declaration]] | None:
+    """Return a spec with these clauses and its tree; None if they cannot be parsed."""
+    source = SourceFile("", f"spec s {{ {clauses} }}", "text")
+    lexed = tokenize(source.text)
+    try:
+        return source, lalr.run(load(), "module", lexed.tokens, Builder(source, lexed.docs))
+    except lalr.UnexpectedTokenError:
+        return None
 
 
 def _is_held(expression: Expr) -> bool:

@@ -53,7 +53,8 @@ def _own(words: Words, at: int) -> tuple[int, list[Word]]:
         return counted
     if declared_so_far := _so_far(words, at):
         return declared_so_far
-    if text == "last" and words.word(at - 1) == "since":
+    before = at - 1 - (words.word(at - 1) == "the")
+    if text in ("last", "previous") and words.word(before) == "since":
         return at + 1, [words[at]]
     is_call = at + 1 < len(words) and words[at + 1].text == "("
     stop = call_end(words, at)
