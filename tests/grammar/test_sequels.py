@@ -301,6 +301,7 @@ def help_of(typed: str) -> str:
     [
         ("no fire and no spray when boss_dead", "`keep boss_dead implies not fire and not spray`"),
         ("avoid fire and avoid spray when boss_dead", "`keep boss_dead implies not fire and not spray`"),
+        ("when fire, not spray before boss_dead", "`keep fire implies (not spray weak_until boss_dead)`"),
         ("fire again only after spray", "`keep fire and previously once fire implies previously"),
         ("fire must not happen again until spray", "`keep fire implies weak_next (not fire weak_until spray)`"),
         ("when fire, spray for 3 s unless boss_dead", "(spray until boss_dead)"),
@@ -324,6 +325,13 @@ def test_two_comparisons_of_a_number_with_fractions_are_explained() -> None:
     note = "`health` has fractions, which `==` cannot compare: two comparisons say the same"
     assert help_of("after fire keep health == previous(health)").splitlines()[1:] == [note]
     assert help_of("after fire keep coins == previous(coins)").splitlines()[1:] == []
+
+
+def test_a_condition_that_lasts_asks_at_each_step_for_what_must_come_first() -> None:
+    note = "each step with `fire` asks for `spray` anew; write `begins` before it if one is enough each time"
+    assert help_of("when fire, spray before boss_dead").splitlines()[1:] == [note]
+    assert help_of("when fire begins, spray before boss_dead").splitlines()[1:] == []
+    assert help_of("when fire, spray until boss_dead").splitlines()[1:] == []
 
 
 def is_violated(clause: str, steps: str) -> bool:

@@ -12,7 +12,7 @@ from tltlc.grammar.builder import Builder
 from tltlc.grammar.lexer import tokenize
 from tltlc.grammar.mistakes.declared_names import DeclaredNames
 from tltlc.grammar.tables import load
-from tltlc.grammar.tree import BinaryExpr, CallExpr, Declaration, Expr, NumberExpr, Unary
+from tltlc.grammar.tree import BinaryExpr, CallExpr, Declaration, Expr, GroupExpr, NumberExpr, Unary
 from tltlc.grammar.walk import expressions, parts
 
 _SECONDS: Final = {"ms": 0.001, "s": 1.0, "min": 60.0, "h": 3600.0}
@@ -34,7 +34,8 @@ def notes(clauses: str, names: DeclaredNames, typed: str) -> tuple[str, ...]:
     formulas = (part for spec in declarations for part in expressions(spec))
     all_notes = (note for part in formulas for note in _notes(part, source, names.step_s))
     new = dict.fromkeys(note for note, words in all_notes if not any(word in typed.lower() for word in words))
-    return (*equality_notes(clauses, typed), *new)
+    anew = (note for part in _parts_of(declarations) if "before" in typed and (note := _asked_anew(part, source)))
+    return (*equality_notes(clauses, typed), *new, *dict.fromkeys(anew))
 
 
 def _notes(expression: Expr, source: SourceFile, step_s: float) -> Iterator[tuple[str, tuple[str, ...]]]:
@@ -71,9 +72,25 @@ def equality_notes(clauses: str, typed: str) -> tuple[str, ...]:
     if written is None or "==" not in typed:
         return ()
     source, specs = written
-    formulas = (part for spec in specs for expression in expressions(spec) for part in parts(expression))
-    texts = dict.fromkeys(text for formula in formulas if (text := _equal_number(formula, source)))
+    texts = dict.fromkeys(text for formula in _parts_of(specs) if (text := _equal_number(formula, source)))
     return tuple(f"`{text}` has fractions, which `==` cannot compare: two comparisons say the same" for text in texts)
+
+
+def _parts_of(declarations: Sequence[Declaration]) -> Iterator[Expr]:
+    """Yield the formulas of declarations, and the formulas in them."""
+    return (part for declaration in declarations for whole in expressions(declaration) for part in parts(whole))
+
+
+def _asked_anew(rule: Expr, source: SourceFile) -> str:
+    """Return what to know of `a implies (not c weak_until b)`, where a may last; "" for other formulas."""
+    if not isinstance(rule, BinaryExpr) or rule.op != "implies":
+        return ""
+    answer = rule.right.inner if isinstance(rule.right, GroupExpr) else rule.right
+    is_edge = isinstance(rule.left, Unary) and rule.left.op in ("begins", "ends")
+    if is_edge or not isinstance(answer, BinaryExpr) or answer.op != "W":
+        return ""
+    event, first = source.slice(rule.left.span), source.slice(answer.right.span)
+    return f"each step with `{event}` asks for `{first}` anew; write `begins` before it if one is enough each time"
 
 
 def _equal_number(formula: Expr, source: SourceFile) -> str:

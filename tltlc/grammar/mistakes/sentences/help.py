@@ -42,8 +42,11 @@ _ENGLISH_ALONE: Final = phrases(
     "goes below",
     "rises above",
     "goes above",
-    "again",
-    "before",
+    "before ends",
+    "again only",
+    "only again",
+    "again until",
+    "again till",
 )
 """Words whose meaning in English is not that of an operator, or more than that of a comparison."""
 _GOALS: Final = ("reach ", "require eventually ")
