@@ -49,6 +49,20 @@ def test_a_sentence_without_a_reading_gets_forms(sentence: str, form: str) -> No
     assert len(lines) <= 4
 
 
+def test_a_form_keeps_the_words_about_beginnings_and_times() -> None:
+    forms = help_of("so begins a then b within 2 s or so")[1:]
+    assert forms == [
+        "`keep begins a implies eventually within 2 s b`: at every step with `begins a`, `b` then or at most 2 s later",
+        "`reach begins a then within 2 s b`: `begins a` at some step, and `b` at most 2 s later",
+    ]
+
+
+def test_a_form_joins_begins_and_the_condition_behind_it() -> None:
+    forms = help_of("so begins (a and c) then b within 2 s or so")[1:]
+    assert forms
+    assert all("begins (a and c)" in form for form in forms)
+
+
 @pytest.mark.parametrize(
     "sentence",
     [

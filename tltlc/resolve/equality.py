@@ -114,7 +114,11 @@ def _time_error(time: Quantity, other: Expr, expr: BinaryExpr, env: Env) -> Reso
     source = env.scope.source
     title = f"`{expr.op}` compares whole numbers, and `{time.text}` is a time"
     border = " ".join(source.slice(other.span).split())
-    advice = f"a time may pass {border} between two samples: write `{time.text} >= {border}`, true from then on"
+    later = f"`{time.text} >= {border}`"
+    advice = f"a time may pass {border} between two samples: write {later}, true from then on"
+    if env.is_event:  # a rule whose condition stays true would ask at each later step
+        begun = f"`begins ({time.text} >= {border})`, true only where {border} are over"
+        advice = f"a time may pass {border} between two samples: write {begun}; {later} stays true"
     if expr.op == "!=":
         advice = f"write `{time.text} < {border}`, true before then, or `{time.text} > {border}`, true after then"
     return problem("TLT0110", title, source, expr.span, advice=advice)

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from tltlc.core.record import replace
 from tltlc.core.source import Span
 from tltlc.diagnostics.diagnostic import Label
 from tltlc.expression.tree import Const, Expression, Op
@@ -119,10 +120,10 @@ def _formula(expr: Expr, env: Env) -> FormulaGenerator:
     if isinstance(expr, (CallExpr, IsExpr)) or (isinstance(expr, BinaryExpr) and expr.op in _COMPARISONS):
         return (yield _resolve_once(expr, env))
     if isinstance(expr, Unary) and expr.op in _UNARY:
-        operand = yield _formula(expr.operand, env)
+        operand = yield _formula(expr.operand, _at(env, is_event=expr.op == "not"))
         return bounded_operator(expr, operand, env) if expr.bound else _UNARY[expr.op](operand)
     if isinstance(expr, Unary) and expr.op in memory.PAST:
-        operand = yield _formula(expr.operand, env)
+        operand = yield _formula(expr.operand, _at(env, is_event=False))
         return memory.past(expr, operand, env)
     if isinstance(expr, BinaryExpr) and expr.op == "since":
         check_no_count(expr, env)
@@ -142,12 +143,18 @@ def _formula(expr: Expr, env: Env) -> FormulaGenerator:
         if expr.op in _BINARY or expr.op == "within":
             if expr.op in ("U", "W") and isinstance(expr.right, NumberExpr) and expr.right.unit is not None:
                 raise ResolutionError(misused_operator(env.scope.source, expr.right.span))
-            left = yield _formula(expr.left, env)
-            right = yield _formula(expr.right, env)
+            is_rule = expr.op in ("implies", "within")
+            left = yield _formula(expr.left, _at(env, is_event=is_rule or expr.op == "iff"))
+            right = yield _formula(expr.right, _at(env, is_event=expr.op == "iff"))
             if expr.bound is not None:
                 return with_bound(expr, left, right, env)
             return _BINARY[expr.op](left, right)
     raise not_a_formula_error(expr, env)
+
+
+def _at(env: Env, *, is_event: bool) -> Env:
+    """Return the environment of an operand, which stands in the condition of a rule or not."""
+    return env if env.is_event == is_event else replace(env, is_event=is_event)
 
 
 def _resolve_once(expr: CallExpr | BinaryExpr | IsExpr, env: Env) -> FormulaGenerator:

@@ -25,7 +25,7 @@ from tltlc.resolve.recall import check_closed, saturate
 from tltlc.resolve.scope import FUNCTIONS
 from tltlc.resolve.spec import Signal
 from tltlc.resolve.units import Dimension
-from tltlc.resolve.values import LOOSEST, Env, Quantity, Unknown, apply, constant
+from tltlc.resolve.values import LOOSEST, Env, Quantity, Unknown, apply, constant, number_text
 
 _ARITHMETIC = ("+", "-", "*", "/", "^")
 _COMPARISONS = ("<", "<=", ">", ">=", "==", "!=")
@@ -138,13 +138,24 @@ def _number(expr: NumberExpr, env: Env) -> Quantity:
             env.scope.source,
             expr.span,
             advice="steps count samples: use them only in bounds such as `within 20 steps` and in `limit`, and compare "
-            "times with seconds",
+            f"times with seconds{_in_seconds(expr, env)}",
         )
     value, dimension = in_si
     if isinf(value):
         advice = "write a number that is finite in SI units"
         raise problem("TLT0109", "this number is too large", env.scope.source, expr.span, advice=advice)
     return constant(value, None if value == 0 and expr.unit is None else dimension)
+
+
+def _in_seconds(steps: NumberExpr, env: Env) -> str:
+    """Return how long a number of steps takes, for a help; "" if the clock does not say it."""
+    clock_s = env.context.clock_s
+    if not clock_s:
+        return ""
+    seconds = f"{steps.value * clock_s:.6g}"
+    about = "" if abs(float(seconds) - steps.value * clock_s) < 1e-12 else "about "
+    verb = "is" if steps.value == 1 else "are"
+    return f": `{number_text(steps.value)} {steps.unit}` {verb} {about}`{seconds} s` with this clock"
 
 
 def _resolve_name(expr: NameExpr | CallExpr, env: Env, depth: int) -> Quantity:

@@ -102,6 +102,7 @@ class Env:
 
     ``local`` has the values of parameters and quantified variables. ``symbolic`` is true while a
     definition is checked with placeholders as its arguments. ``constant`` forbids signals and params.
+    ``is_event`` says that a comparison stands in the condition of a rule, as before `implies`.
     ``unbounded`` makes ``F[0,3] p`` mean ``F p``, and ``G[0,3] p`` mean ``G p``. It is set only for
     text that has already been resolved with its bounds, so no size is checked and nothing is counted
     again.
@@ -113,6 +114,7 @@ class Env:
     symbolic: bool = False
     constant: bool = False
     unbounded: bool = False
+    is_event: bool = False
 
     def inside(self, scope: Scope, local: Mapping[str, ResolvedValue]) -> Env:
         """Return the environment inside a declaration of ``scope``, with these local names."""

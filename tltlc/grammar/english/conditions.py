@@ -8,6 +8,7 @@ from tltlc.core.record import record
 from tltlc.grammar.english.events import Counted, Crossing, Event, Held, as_state
 from tltlc.grammar.english.quantities import Duration, Number, Quantities, comparison
 from tltlc.grammar.english.terminals import Term
+from tltlc.grammar.mistakes.declared_names import DeclaredNames
 from tltlc.grammar.mistakes.sentences.states import ATOM, OR, RULE, State, joined
 
 
@@ -20,6 +21,13 @@ class Members:
 
 class Conditions(Quantities):
     """The meanings of the rules for conditions, and for what lasts or is counted."""
+
+    def __init__(self, names: DeclaredNames) -> None:
+        super().__init__(names)
+        self.is_again = False
+        """Whether the sentence says `again`."""
+        self._since: dict[str, tuple[State, State]] = {}
+        """Maps the texts of conditions such as `a since the last b` to a and b."""
 
     # Bools and enums.
 
@@ -220,15 +228,30 @@ class Conditions(Quantities):
     def number_of(self, sign: str, number: Term, term: Term) -> Counted:
         return Counted(State(term.text), sign, number.text)
 
-    def since_then(self, state: State, start: State) -> list[State]:
+    def since_then(self, state: State, start: State) -> list[State] | None:
         """Return both readings: the condition holds ever since, or has held at some step since."""
+        if start.text.startswith("previously "):
+            return None  # `since the previous b`, which `since` reads
         return [State(f"({state.at(ATOM)} since {start.at(ATOM)})"), self.since(state, start)]
 
     def since_in_brackets(self, state: State, start: State) -> State:
         return State(f"({state.at(ATOM)} since {start.at(ATOM)})")
 
     def since(self, state: State, start: State) -> State:
-        return State(f"(not {start.at(ATOM)} since {state.at(ATOM)})")
+        since = State(f"(not {start.at(ATOM)} since {state.at(ATOM)})")
+        self._since[since.text] = (state, start)
+        return since
+
+    def at_steps_of(self, event: State, condition: State) -> State | None:
+        """Return a condition at the steps of an event: `since the last event` is since the one before.
+
+        None for one that always holds there: ever since that very step.
+        """
+        state, start = self._since.get(condition.text, (condition, None))
+        if start is not None and start.text == event.text:
+            own = joined([state, start.negated()], "and")  # what holds at the event itself came before it
+            return State(f"previously (not {start.at(ATOM)} since {own.at(ATOM)})")
+        return None if condition.text.endswith(f" since {event.at(ATOM)})") else condition
 
 
 def _crossing(state: State | None) -> Crossing | None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence, Set
 from itertools import pairwise
 from typing import Final
 
@@ -24,6 +24,9 @@ _PAIRED: Final = frozenset("between both either neither exactly precisely to".sp
 _MODALS: Final = ("must", "should", "may", "can", "will", "shall")
 _UNCLEAR: Final = frozenset("unless again longer may allowed end ends least more less but".split())
 """Words beside two conditions that the forms would take for their opposite, or leave out."""
+_EDGES: Final = ("begins", "ends")
+_BEGUN: Final = ("begins ", "ends ")
+_BEGINNINGS: Final = frozenset("begins begin starts start becomes".split())
 _NEGATIONS: Final = frozenset("no not never avoid without cannot can't don't mustn't nor".split())
 
 
@@ -76,7 +79,7 @@ _ONE_COUNTED: Final = (
 _TWO: Final = (
     _Pattern("keep {t} implies {r}", "at each step with {t}, {r}",
              "when if while whenever during then means implies only must at"),
-    _Pattern("keep {t} implies eventually {r}", "each {t} is followed by {r}, at that step or later",
+    _Pattern("keep {t} implies eventually {r}", "at every step with {t}, {r} then or later",
              "when if whenever after then once follow followed eventually must later"),
     _Pattern("keep {t} implies always {r}", "from the first {t} on, {r} at every step",
              "after once from stays stay always never ever no"),
@@ -89,7 +92,7 @@ _TWO: Final = (
     _Pattern("reach {a} and {b}", "both at one step", "reach and with while get"),
 )  # fmt: skip
 _TWO_IN_TIME: Final = (
-    _Pattern("keep {t} implies eventually within {T} {r}", "each {t} is answered by {r} at most {T} later",
+    _Pattern("keep {t} implies eventually within {T} {r}", "at every step with {t}, {r} then or at most {T} later",
              "when if whenever after within in then must later by under each every"),
     _Pattern("keep {p} implies once within {T} {t}", "{p} only at most {T} after {t}",
              "only ago last before since earlier"),
@@ -122,6 +125,9 @@ _THREE: Final = (
              "until till between"),
     _Pattern("keep {a} implies (not {c} since {b})", "{a} only if {b} has been since the last {c}",
              "since"),
+    _Pattern("keep {a} implies previously (not {a} since ({b} and not {a}))",
+             "each {a} needs a {b} after the {a} before",
+             "since"),
     _Pattern("keep {t} and {c} implies {r}", "at each step with {t} and {c}, {r}",
              "while during unless"),
 )  # fmt: skip
@@ -142,6 +148,7 @@ Part = State | Duration | Term
 
 def forms(parts: Sequence[Part]) -> tuple[Form, ...]:
     """Return the forms that a sentence may mean, the likeliest first; () if its parts suit none."""
+    parts = _with_edges(parts)
     conditions = [at for at, part in enumerate(parts) if isinstance(part, State)]
     durations = [part for part in parts if isinstance(part, Duration)]
     words = [part.text for part in parts if isinstance(part, Term)]
@@ -158,13 +165,45 @@ def forms(parts: Sequence[Part]) -> tuple[Form, ...]:
     texts.update(T=durations[0].text if durations else "", n=numbers[0] if numbers else "")
     cues = set(words)
     known = [p for p in PATTERNS[key] if words[:1] not in (["keep"], ["avoid"]) or not p.clause.startswith("reach")]
+    known = [pattern for pattern in known if _keeps_words(pattern, cues, slots)]
     ranked = sorted(known, key=lambda pattern: -len(cues & set(pattern.cues.split())))
-    fitting = [pattern for pattern in ranked if cues & set(pattern.cues.split())] or known[:3]
+    fitting = [pattern for pattern in ranked if cues & set(pattern.cues.split())]
+    if not fitting and len(conditions) < 3:
+        fitting = known[:3]
     quoted = {name: f"`{text}`" if name not in "Tn" else text for name, text in texts.items()}
     in_steps = any(duration.is_steps for duration in durations)
     fitting = [p for p in fitting if not (in_steps and "time_holding" in p.clause)]  # which is a time in seconds
     all_forms = (Form(p.clause.format(**texts), p.says.format(**quoted)) for p in fitting)
     return tuple({form.clause: form for form in all_forms}.values())[:_MOST_FORMS]
+
+
+def _with_edges(parts: Sequence[Part]) -> list[Part]:
+    """Return the parts with `begins` and `ends` as part of the condition behind them."""
+    joined: list[Part] = []
+    for part in parts:
+        before = joined[-1] if joined else None
+        if isinstance(part, State) and isinstance(before, Term) and before.text in _EDGES:
+            joined[-1] = State(f"{before.text} {part.at(ATOM)}")
+        else:
+            joined.append(part)
+    return joined
+
+
+def _keeps_words(pattern: _Pattern, words: Set[str], slots: Mapping[str, State]) -> bool:
+    """Whether a form keeps what the words of a sentence say about time, and about where a condition begins."""
+    is_begun = "begins {" in pattern.clause
+    event = slots.get("t", slots.get("a"))
+    if is_begun and event is not None and event.text.startswith(_BEGUN):
+        return False  # the condition is a beginning already
+    if not is_begun and not words.isdisjoint(_BEGINNINGS):
+        return False  # a beginning that belongs to no condition
+    is_held = "always for" in pattern.clause or "time_holding" in pattern.clause
+    if is_held and "within" in words and "for" not in words:
+        return False  # one step of that time is enough
+    if "time_holding({t})" in pattern.clause and event is not None and event.text.startswith(_BEGUN):
+        return False  # a beginning is one step
+    same = slots.get("a") == slots.get("c")
+    return not (("since {b})" in pattern.clause and same) or ("since ({b}" in pattern.clause and not same))
 
 
 def _slots(parts: Sequence[Part], conditions: Sequence[int]) -> dict[str, State]:

@@ -23,12 +23,9 @@ _BEGINNINGS: Final = (
 """Words about a moment, which a state that lasts has only one of."""
 _AWAITING: Final = ("F", "X", "U", "M", "then", "within")
 """The operators that ask for something that may come later."""
-
-
 _OF_CALLS: Final = {
     "times": "`{call}` counts how often `{0}` begins: steps in a row count once",
-    "times_since": "`{call}` counts how often `{0}` begins; each step with `{1}` begins a new count, "
-    "in which it counts",
+    "times_since": "`{call}` counts how often `{0}` begins, anew from each step with `{1}` on",
     "total_time": "`{call}` adds up the stretches with `{0}`, each from 0 s at its first step",
     "value_at": "`{call}` is the value at the first step until the first step with `{1}`",
 }
@@ -39,15 +36,15 @@ _MOST_STEPS: Final = 100
 
 def notes(clauses: str, names: DeclaredNames, typed: str) -> tuple[str, ...]:
     """Return what to know of clauses that stand for ``typed``: nothing of what stands there already."""
-    source = SourceFile("", f"spec s {{ {clauses} }}", "text")
-    lexed = tokenize(source.text)
-    try:
-        declarations: Sequence[Declaration] = lalr.run(load(), "module", lexed.tokens, Builder(source, lexed.docs))
-    except lalr.UnexpectedTokenError:
+    written = _written(clauses)
+    if written is None:
         return ()
-    written = (part for spec in declarations for part in expressions(spec))
-    all_notes = (note for part in written for note in _notes(part, source, names.step_s))
-    return tuple(dict.fromkeys(note for note, words in all_notes if not any(word in typed.lower() for word in words)))
+    source, declarations = written
+    formulas = (part for spec in declarations for part in expressions(spec))
+    all_notes = (note for part in formulas for note in _notes(part, source, names.step_s))
+    new = dict.fromkeys(note for note, words in all_notes if not any(word in typed.lower() for word in words))
+    anew = (note for part in _parts_of(declarations) if "before" in typed and (note := _asked_anew(part, source)))
+    return (*equality_notes(clauses, typed), *new, *dict.fromkeys(anew))
 
 
 def _notes(expression: Expr, source: SourceFile, step_s: float) -> Iterator[tuple[str, tuple[str, ...]]]:
@@ -102,6 +99,56 @@ def _is_after_event(call: CallExpr, source: SourceFile) -> bool:
     """Whether a value at an event is asked for only after that event: `a implies x >= value_at(x, begins a)`."""
     event = source.slice(call.arguments[1].span).removeprefix("begins ").strip("()")
     return any(f"{before}{event} implies " in source.text for before in ("keep ", "keep ends ", "keep begins "))
+
+
+def equality_notes(clauses: str, typed: str) -> tuple[str, ...]:
+    """Return why clauses have two comparisons of a number with fractions in place of the `==` of ``typed``."""
+    written = _written(clauses)
+    if written is None or "==" not in typed:
+        return ()
+    source, specs = written
+    texts = dict.fromkeys(text for formula in _parts_of(specs) if (text := _equal_number(formula, source)))
+    return tuple(f"`{text}` has fractions, which `==` cannot compare: two comparisons say the same" for text in texts)
+
+
+def _parts_of(declarations: Sequence[Declaration]) -> Iterator[Expr]:
+    """Yield the formulas of declarations, and the formulas in them."""
+    return (part for declaration in declarations for whole in expressions(declaration) for part in parts(whole))
+
+
+def _asked_anew(rule: Expr, source: SourceFile) -> str:
+    """Return what to know of `a implies (not c weak_until b)`, where a may last; "" for other formulas."""
+    if not isinstance(rule, BinaryExpr) or rule.op != "implies":
+        return ""
+    answer = rule.right.inner if isinstance(rule.right, GroupExpr) else rule.right
+    is_edge = isinstance(rule.left, Unary) and rule.left.op in ("begins", "ends")
+    if is_edge or not isinstance(answer, BinaryExpr) or answer.op != "W":
+        return ""
+    event, first = source.slice(rule.left.span), source.slice(answer.right.span)
+    return f"each step with `{event}` asks for `{first}` anew; write `begins` before it if one is enough each time"
+
+
+def _equal_number(formula: Expr, source: SourceFile) -> str:
+    """Return a of `a >= b and a <= b`; "" for other formulas."""
+    if not isinstance(formula, BinaryExpr) or formula.op != "and":
+        return ""
+    left, right = formula.left, formula.right
+    if not (isinstance(left, BinaryExpr) and isinstance(right, BinaryExpr)) or (left.op, right.op) != (">=", "<="):
+        return ""
+    number, same, limit, same_limit = (
+        source.slice(side.span) for side in (left.left, right.left, left.right, right.right)
+    )
+    return number if (number, limit) == (same, same_limit) else ""
+
+
+def _written(clauses: str) -> tuple[SourceFile, Sequence[Declaration]] | None:
+    """Return a spec with these clauses and its tree; None if they cannot be parsed."""
+    source = SourceFile("", f"spec s {{ {clauses} }}", "text")
+    lexed = tokenize(source.text)
+    try:
+        return source, lalr.run(load(), "module", lexed.tokens, Builder(source, lexed.docs))
+    except lalr.UnexpectedTokenError:
+        return None
 
 
 def _is_held(expression: Expr) -> bool:

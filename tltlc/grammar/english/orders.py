@@ -80,26 +80,44 @@ class Orders(Rules):
         return Reading(tuple(f"reach {state.at(OR)} then {last.at(OR)}" for state in goals.states))
 
     def reach_goals_within(self, goals: Goals, duration: Duration) -> _Found:
-        *before, last = goals.states
-        if (
-            not before
-            or is_negative(last)
-            or any(" then " in state.text or "always " in state.text for state in goals.states)
-        ):
+        """Return the readings of `a then b then c within 5 s`, by the step from which the time counts."""
+        if len(goals.states) < 2:
             return None
-        first = " then ".join(state.at(OR) for state in before)
-        whole = before[0]
+        first, *between, last = goals.states
+        if is_negative(last) or any(" then " in goal.text or "always " in goal.text for goal in goals.states):
+            return None
+        time, earlier = duration.text, [first, *between]
+        whole = first
         for state in goals.states[1:]:
             whole = joined([state, State(f"previously once {whole.at(ATOM)}")], "and")
-        rest, earlier = f"then within {duration.text} {last.at(OR)}", before[-1]
         readings = [
-            Reading((f"require eventually within {duration.text} {whole.at(ATOM)}",), "if the time is for all of them"),
-            Reading((f"reach {first} {rest}",), f"if it counts from any step with `{earlier.text}`, such as the last"),
+            Reading(
+                (f"require eventually within {time} {whole.at(ATOM)}",),
+                "if the time is for all of them, from the first step of play on",
+            )
         ]
-        if earlier.level == ATOM and not earlier.text.startswith(("begins ", "ends ", "time", "not ")):
-            begun = " then ".join([*(state.at(OR) for state in before[:-1]), f"begins {earlier.at(ATOM)}"])
-            readings.insert(1, Reading((f"reach {begun} {rest}",), f"if it counts from where `{earlier.text}` begins"))
-        return readings
+        if between and _may_begin(first):
+            # The time counts from the last beginning of the first goal.
+            timed = joined([last, State(f"once within {time} {begun_text(first)}")], "and")
+            goal = " then ".join([*(state.at(OR) for state in earlier), timed.at(ATOM)])
+            where = f"from where `{first.text}` begins, the last time if it begins again"
+            readings.append(Reading((f"reach {goal}",), f"if it is for all of them, {where}"))
+        rest, nearest = f"then within {time} {last.at(OR)}", earlier[-1]
+        if _may_begin(nearest) and not nearest.text.startswith(("begins ", "ends ")):
+            begun = " then ".join([*(state.at(OR) for state in earlier[:-1]), begun_text(nearest)])
+            readings.append(Reading((f"reach {begun} {rest}",), f"if it counts from where `{nearest.text}` begins"))
+        goal = " then ".join(state.at(OR) for state in earlier)
+        where = f"any step with `{nearest.text}`, such as the last"
+        return [*readings, Reading((f"reach {goal} {rest}",), f"if it counts from {where}")]
+
+    def within_reach_goals(self, duration: Duration, goals: Goals) -> _Found:
+        return self.reach_goals_within(goals, duration)
+
+    def bare_goals_within(self, *parts: Event | Duration) -> _Found:
+        duration = parts[-1]
+        assert isinstance(duration, Duration)
+        goals = self.goals(*(part for part in parts if not isinstance(part, Duration)))
+        return self.reach_goals_within(goals, duration) if isinstance(goals, Goals) else None
 
     def goals_without(self, goals: Goals, avoided: State) -> _Found:
         between = self.goals_without_between(goals, avoided)
@@ -201,6 +219,11 @@ class Orders(Rules):
 
     def never_goes(self, early: State, late: State) -> _Found:
         return self.never_follows(late, early)
+
+
+def _may_begin(state: State) -> bool:
+    """Whether the beginning of a goal is a condition that a writer may mean by it."""
+    return state.level == ATOM and not state.text.startswith(("time", "not "))
 
 
 def _goal(event: Event) -> State | None:

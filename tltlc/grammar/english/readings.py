@@ -13,14 +13,14 @@ from tltlc.grammar.english.forms import Form, Part, forms
 from tltlc.grammar.english.periods import Periods
 from tltlc.grammar.english.rules import Reading, Rules
 from tltlc.grammar.english.sentence_parser import SentenceParser, sentence_parser
-from tltlc.grammar.english.stretches import Stretches
+from tltlc.grammar.english.sequels import Sequels
 from tltlc.grammar.english.terminals import UNKNOWN, Term, known_terms, terms
 from tltlc.grammar.english.transitions import Transitions
 from tltlc.grammar.mistakes.sentences.states import State
 from tltlc.grammar.mistakes.sentences.validity import is_valid
 from tltlc.grammar.mistakes.sentences.words import Words, phrases
 
-_MOST_READINGS: Final = 3
+_MOST_READINGS: Final = 4
 """The most readings that a help names."""
 _LONGEST_PART: Final = 12
 """The most terminals of a condition in a sentence that is not understood."""
@@ -38,7 +38,7 @@ _MOST: Final = 64
 """The most ways in which the parts of one phrase are put together."""
 
 
-class Meanings(Periods, Stretches, Changes, Transitions):
+class Meanings(Periods, Sequels, Changes, Transitions):
     """The meanings of all rules of the grammar."""
 
 
@@ -117,6 +117,7 @@ def _sentence(words: Words) -> Sentence:
     unique: dict[tuple[str, ...], Reading] = {}
     rules = Meanings(words.names)
     rules.is_lasting = any(term.text in _LASTING for term in terminals)
+    rules.is_again = any(term.text == "again" for term in terminals)
     for reading in _values(tree.children[0], rules):
         unique.setdefault(reading.clauses, reading)
     if len(unique) > _MOST_READINGS:

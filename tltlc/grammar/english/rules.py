@@ -164,7 +164,7 @@ class Rules(Answers):
 
     def only_when(self, state: State, event: Event) -> _Found:
         condition = as_state(event)
-        condition = condition and _at(state, condition)
+        condition = condition and self.at_steps_of(state, condition)
         return None if condition is None else Reading((f"keep {state.at(OR)} implies {condition.at(OR)}",))
 
     def only_after(self, state: State, event: Event) -> _Found:
@@ -253,7 +253,7 @@ class Rules(Answers):
         if condition is None or len(answers) > 1:
             return None
         answer = answers[0].answer
-        condition = _at(answer.state.negated() if answer.is_negative else answer.state, condition)
+        condition = self.at_steps_of(answer.state.negated() if answer.is_negative else answer.state, condition)
         # `a and b unless c` is the same, whatever `unless` belongs to.
         words = answer.state.negated().text.split()
         is_simple = condition is not None and (not isinstance(event, State) or are_simple(condition))
@@ -269,17 +269,6 @@ class Rules(Answers):
 
     def unless_first(self, event: Event, answers: list[Asked]) -> _Found:
         return self.unless(answers, event)
-
-
-def _at(event: State, condition: State) -> State | None:
-    """Return a condition at the steps of an event: `since the last event` is since the one before.
-
-    None for one that always holds there: ever since that very step.
-    """
-    is_own = condition.text.startswith(f"(not {event.at(ATOM)} since ")
-    if is_own:
-        return State(f"previously {condition.text}")
-    return None if condition.text.endswith(f" since {event.at(ATOM)})") else condition
 
 
 def are_simple(*states: State) -> bool:

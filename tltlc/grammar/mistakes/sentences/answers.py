@@ -114,7 +114,7 @@ def _until(words: Words) -> Answer | None:
     state = state_of(left[len(forbidden) :])
     if state is None or right is None:
         return None
-    if found[1] == ("before",) and not forbidden:
+    if found[1] == ("before",) and not forbidden and not state.text.startswith("not "):
         return Answer("now", State(f"({right.negated().at(ATOM)} weak_until {state.at(ATOM)})"))
     state = state.negated() if forbidden else state
     if not state.text.startswith("not "):

@@ -53,7 +53,9 @@ def _own(words: Words, at: int) -> tuple[int, list[Word]]:
         return counted
     if declared_so_far := _so_far(words, at):
         return declared_so_far
-    if text == "last" and _is_of_event(words, at):
+    before = at - 1 - (words.word(at - 1) == "the")
+    is_since = text in ("last", "previous") and words.word(before) == "since"
+    if is_since or (text == "last" and _is_of_event(words, at)):
         return at + 1, [words[at]]
     is_call = at + 1 < len(words) and words[at + 1].text == "("
     stop = call_end(words, at)

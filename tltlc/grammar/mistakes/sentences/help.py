@@ -8,7 +8,7 @@ from typing import Final
 from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import Diagnostic, Fix, replacement_fix
 from tltlc.grammar.english.clauses import plain_text
-from tltlc.grammar.english.notes import notes
+from tltlc.grammar.english.notes import equality_notes, notes
 from tltlc.grammar.english.readings import sentence, sentence_forms
 from tltlc.grammar.english.rules import Reading
 from tltlc.grammar.english.terminals import CALLED
@@ -30,11 +30,24 @@ from tltlc.grammar.mistakes.sentences.reading import (
     sentence_words,
 )
 from tltlc.grammar.mistakes.sentences.validity import is_valid
+from tltlc.grammar.mistakes.sentences.vocabulary import UNLESS
 from tltlc.grammar.mistakes.sentences.words import Words, phrases
 from tltlc.grammar.past_words import SYNONYMS
 
 _ENGLISH_ALONE: Final = phrases(
-    "since", "requires", "needs", "falls below", "drops below", "goes below", "rises above", "goes above"
+    "since",
+    "requires",
+    "needs",
+    "falls below",
+    "drops below",
+    "goes below",
+    "rises above",
+    "goes above",
+    "before ends",
+    "again only",
+    "only again",
+    "again until",
+    "again till",
 )
 """Words whose meaning in English is not that of an operator, or more than that of a comparison."""
 _GOALS: Final = ("reach ", "require eventually ")
@@ -82,7 +95,11 @@ def _with_reading(
         return known  # the help says what to declare
     is_whole = bool(known.fixes) and is_mended(failure, known.fixes[0])
     words = sentence_words(failure)
-    is_english = words.find(_ENGLISH_ALONE) is not None or any(map(counts_in_periods, (words, with_names(words))))
+    is_english = (
+        words.find(_ENGLISH_ALONE) is not None
+        or any(map(counts_in_periods, (words, with_names(words))))
+        or (is_whole and _may_miss(failure, known.fixes[0], words))
+    )
     if not is_english and (
         (is_whole and not _is_foreign(known.fixes[0], failure)) or _has_readings(failure, known.help or "")
     ):
@@ -132,6 +149,17 @@ def _is_foreign(fix: Fix, failure: ParseFailure) -> bool:
     )
 
 
+def _may_miss(failure: ParseFailure, fix: Fix, words: Words) -> bool:
+    """Whether a fix takes one of two readings.
+
+    It compares a value with that of the step before from some step on, and that step may not be meant. Or it says
+    how long something lasts `unless` something else comes, which may also end that time.
+    """
+    text = mended(failure, fix)
+    is_compared = " implies always " in text and "previous(" in text
+    return is_compared or (" implies always for " in text and words.find(UNLESS) is not None)
+
+
 def _is_same(reading: Reading, failure: ParseFailure, fix: Fix) -> bool:
     """Whether a fix leaves the clauses of a reading, apart from blanks and brackets."""
     return plain_text(" ".join(reading.clauses)) == plain_text(mended(failure, fix))
@@ -159,7 +187,8 @@ def _with_readings(failure: ParseFailure, diagnostic: Diagnostic, found: tuple[R
     texts = [" and ".join(f"`{clause}`" for clause in reading.clauses) for reading in valid]
     if len(valid) > 1 or valid[0].condition:
         described = [f"{text} {reading.condition}".rstrip() for text, reading in zip(texts, valid, strict=True)]
-        return replace(diagnostic, help=f"write {', or '.join(described)}", fixes=())
+        known = equality_notes(" ".join(valid[0].clauses), failure.source.slice(span))
+        return replace(diagnostic, help="\n".join((f"write {', or '.join(described)}", *known)), fixes=())
     indent = failure.source.text[: span.start].rpartition("\n")[2]
     separator = f"\n{indent}" if not indent.strip() else " "
     fix = replacement_fix(failure.source, span, separator.join(valid[0].clauses))

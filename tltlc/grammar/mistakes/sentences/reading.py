@@ -32,6 +32,7 @@ from tltlc.grammar.mistakes.sentences.words import Words, phrases, words_of
 from tltlc.grammar.tables import load
 
 _JOINTS: Final = phrases("and", ",", ", and", "but", ", but", ";", ".", "without", "while")
+_STOPS: Final = phrases(";", ".")
 _RULES_BEHIND: Final = phrases(", never", ", no", ", without", "with")
 _CARRIED: Final = phrases("and bring it", "and carry it", "and bring them", "and take it")
 """Words between a thing and the place at which it must be held."""
@@ -287,6 +288,9 @@ def _joined(words: Words) -> Clauses | None:
         state = state_of(right.without(phrases("ever", "being", "ever being")))
         return None if state is None else (*first, f"avoid {state.text}")
     second = _sentence(right)
+    is_forbidden = right.phrase(0, PROHIBITIONS) and first[0].startswith("avoid ")
+    if second is not None and is_forbidden and joint[1] not in _STOPS and not second[0].startswith("avoid "):
+        return None  # the condition of `no a and no b while c` is about both
     return None if second is None else (*first, *second)
 
 

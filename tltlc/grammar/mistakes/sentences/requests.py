@@ -44,9 +44,10 @@ def request_of(words: Words, *, is_imperative: bool) -> Clauses | None:
 def _staying(words: Words) -> Clauses | None:
     """Return the goal of `stay hidden for 1 min`: a stretch of that time."""
     holding = holding_of(words[1:]) if words.word(0) in ("stay", "remain") else None
-    if holding is None or holding[1] not in ("", ">=", ">"):
+    if holding is None or holding[1] not in ("", ">=", ">", "=="):
         return None
-    return (f"reach time_holding({holding[0].text}) {holding[1] or '>='} {holding[2]}",)
+    sign = ">" if holding[1] == ">" else ">="
+    return (f"reach time_holding({holding[0].text}) {sign} {holding[2]}",)
 
 
 def _infinitely_often(words: Words) -> Clauses | None:
@@ -168,7 +169,9 @@ def _listed(words: Words) -> Clauses | None:
     if len(goals) > 1 or not (goals or rules) or (time is not None and not goals) or not (rules or time):
         return None
     if not goals:
-        return tuple(rules)
+        # The condition of `no a and no b while c` is about both.
+        is_shared = len(rules) > 1 and rules[0].startswith("avoid ") and not rules[-1].startswith("avoid ")
+        return None if is_shared and not words.find(phrases(";", ".")) else tuple(rules)
     goal = goals[0] if time is None else goals[0].followed_by(time)
     request = _goal(goal, is_imperative=True)
     return None if request is None else (*request, *rules)

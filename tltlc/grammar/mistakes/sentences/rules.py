@@ -57,6 +57,8 @@ def condition_of(words: Words) -> State | None:
         state = state_of(words[: becomes[0]].followed_by(words[becomes[0] + len(becomes[1]) :].without([("true",)])))
         return None if state is None or state.level > ATOM else State(f"begins {state.text}")
     holding = holding_of(words)
+    if holding is not None and holding[1] == "==":
+        return State(f"begins (time_holding({holding[0].text}) >= {holding[2]})")  # the step at which it is over
     if holding is not None:
         held = State(f"time_holding({holding[0].text}) {holding[1] or '>='} {holding[2]}")
         # A time that is not yet over is also 0 while the condition does not hold.

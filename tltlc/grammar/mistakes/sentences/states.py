@@ -127,7 +127,10 @@ def count_of(words: Words) -> tuple[State, str, str] | None:
 
 
 def holding_of(words: Words) -> tuple[State, str, str] | None:
-    """Return what holds, a sign and a time of `hidden for at least 3 s`; the sign is empty for `for 3 s`."""
+    """Return what holds, a sign and a time of `hidden for at least 3 s`; the sign is empty for `for 3 s`.
+
+    It is `==` for `for exactly 3 s`.
+    """
     found = words.find_last([("for",)])
     if found is None:
         end = call_end(words, 0)
@@ -144,7 +147,8 @@ def holding_of(words: Words) -> tuple[State, str, str] | None:
     rest = words[time[1] :] if time else words
     if time is None or rest.without(phrases("straight", "in a row", "without a break", "or more", "continuously")):
         return None
-    sign = ">=" if rest.phrase(0, phrases("or more")) else COMPARISONS.get(phrase, "")
+    exactly = "==" if phrase == ("exactly",) else ""
+    sign = ">=" if rest.phrase(0, phrases("or more")) else COMPARISONS.get(phrase, exactly)
     state = state_of(words[:at])
     if state is None or (found is None and not sign) or not time[0].is_real:
         return None
