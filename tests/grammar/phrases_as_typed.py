@@ -124,7 +124,7 @@ def warnings(text: str) -> set[str]:
     """Return the codes of what the compiler and the linter say of a text that compiles."""
     compiled = compile_source(SourceFile("a.tltl", text))
     findings = (finding.diagnostic for finding in lint(SourceFile("a.tltl", text)))
-    return {diagnostic.code for diagnostic in (*compiled.diagnostics, *findings) if diagnostic.severity != "note"}
+    return {diagnostic.code for diagnostic in (*compiled.diagnostics, *findings)}
 
 
 def _is_named(phrase: Phrase, text: str, left: list[Diagnostic]) -> bool:
