@@ -316,6 +316,10 @@ class Sequels(Stretches):
 
     def keep_after(self, event: Event, answers: list[Asked]) -> _Found:
         """Return the rule of `keep after a, b within 5 s`."""
+        state = as_state(event)
+        denied = [asked.denied or asked.answer.state.negated() for asked in answers]
+        if state is not None and any(begun_text(one) == begun_text(state) for one in denied):
+            return None  # an event that must not come again, or must end
         return self.first("after", event, [_as_formula(asked) for asked in answers])
 
     def from_then_on(self, event: Event, answers: list[Asked]) -> _Found:
