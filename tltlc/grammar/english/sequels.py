@@ -316,6 +316,10 @@ class Sequels(Stretches):
 
     def keep_after(self, event: Event, answers: list[Asked]) -> _Found:
         """Return the rule of `keep after a, b within 5 s`."""
+        state = as_state(event)
+        denied = [asked.denied or asked.answer.state.negated() for asked in answers]
+        if state is not None and any(begun_text(one) == begun_text(state) for one in denied):
+            return None  # an event that must not come again, or must end
         return self.first("after", event, [_as_formula(asked) for asked in answers])
 
     def from_then_on(self, event: Event, answers: list[Asked]) -> _Found:
@@ -357,28 +361,6 @@ class Sequels(Stretches):
             self._conjoined.add(asked.answer.state.text)
         return asked
 
-    def neither(self, one: State, other: State) -> State:
-        return joined([one.negated(), other.negated()], "and")
-
-    def when_neither(self, when: When, event: Event, state: State) -> _Found:
-        return _kept(when, event, state)
-
-    def neither_when(self, state: State, when: When, event: Event) -> _Found:
-        return _kept(when, event, state)
-
-    def not_both(self, one: State, other: State) -> list[tuple[State, str]]:
-        """Return both readings of `no a and b`, with what tells them apart."""
-        return [
-            (joined([one, other], "and").negated(), f"if `{one.text}` and `{other.text}` must not hold together"),
-            (joined([one.negated(), other], "and"), f"if `{one.text}` must not hold, and `{other.text}` must"),
-        ]
-
-    def when_not_both(self, when: When, event: Event, forbidden: tuple[State, str]) -> _Found:
-        return _kept(when, event, *forbidden)
-
-    def not_both_when(self, forbidden: tuple[State, str], when: When, event: Event) -> _Found:
-        return _kept(when, event, *forbidden)
-
 
 def _is_time(number: Number) -> bool:
     return number.text.startswith(("time_holding(", "time_since("))
@@ -389,15 +371,6 @@ def _beginnings(state: State) -> list[tuple[State, str]]:
     if state.text.startswith(("begins ", "ends ")):
         return [(state, "")]
     return [(State(begun_text(state)), "if steps in a row count once"), (state, "if each step counts")]
-
-
-def _kept(when: When, event: Event, state: State, what: str = "") -> Reading | None:
-    """Return the rule that a condition holds at the steps of an event, or from the first of them on."""
-    condition = as_state(event)
-    if condition is None or not are_simple(condition):
-        return None
-    answer = f"always {state.at(ATOM)}" if when == "after" else state.at(OR)
-    return Reading((f"keep {condition.at(OR)} implies {answer}",), what)
 
 
 def _as_formula(asked: Asked) -> Asked:

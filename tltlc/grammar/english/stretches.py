@@ -8,10 +8,10 @@ from tltlc.grammar.english.events import Counted, Event, Held, as_state
 from tltlc.grammar.english.intervals import Intervals
 from tltlc.grammar.english.orders import Orders
 from tltlc.grammar.english.quantities import Duration
-from tltlc.grammar.english.rules import Goals, Reading, When, begun_text
+from tltlc.grammar.english.rules import Goals, Reading, When, are_simple, begun_text
 from tltlc.grammar.english.terminals import Term
 from tltlc.grammar.mistakes.sentences.answers import Answer
-from tltlc.grammar.mistakes.sentences.states import ATOM, State, joined
+from tltlc.grammar.mistakes.sentences.states import ATOM, OR, State, joined
 
 _Found = Reading | list[Reading] | None
 
@@ -125,6 +125,39 @@ class Stretches(Intervals, Orders):
         formula = State(f"eventually within {duration.text} always {state.at(ATOM)}")
         return Asked(Answer("now", formula), is_formula=True)
 
+    # Rules that forbid two conditions.
+
+    def neither(self, one: State, other: State) -> State:
+        return joined([one.negated(), other.negated()], "and")
+
+    def when_neither(self, when: When, event: Event, state: State) -> _Found:
+        return _kept(when, event, state)
+
+    def neither_when(self, state: State, when: When, event: Event) -> _Found:
+        return _kept(when, event, state)
+
+    def not_both(self, one: State, other: State) -> list[tuple[State, str]]:
+        """Return both readings of `no a and b`, with what tells them apart."""
+        return [
+            (joined([one, other], "and").negated(), f"if `{one.text}` and `{other.text}` must not hold together"),
+            (joined([one.negated(), other], "and"), f"if `{one.text}` must not hold, and `{other.text}` must"),
+        ]
+
+    def when_not_both(self, when: When, event: Event, forbidden: tuple[State, str]) -> _Found:
+        return _kept(when, event, *forbidden)
+
+    def not_both_when(self, forbidden: tuple[State, str], when: When, event: Event) -> _Found:
+        return _kept(when, event, *forbidden)
+
 
 def _duration(parts: tuple[object, ...]) -> Duration:
     return next(part for part in parts if isinstance(part, Duration))
+
+
+def _kept(when: When, event: Event, state: State, what: str = "") -> Reading | None:
+    """Return the rule that a condition holds at the steps of an event, or from the first of them on."""
+    condition = as_state(event)
+    if condition is None or not are_simple(condition):
+        return None
+    answer = f"always {state.at(ATOM)}" if when == "after" else state.at(OR)
+    return Reading((f"keep {condition.at(OR)} implies {answer}",), what)
