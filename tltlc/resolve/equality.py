@@ -106,7 +106,7 @@ def _signal_or_count(side: Quantity, env: Env) -> str | None:
         return value.name
     is_limited = isinstance(value, Op) and value.op == "min" and isinstance(value.args[0], SignalValue)
     register = env.context.registers.get(value.args[0].name) if is_limited else None  # type: ignore[union-attr]
-    return register.name if register is not None and register.kind == "times" else None
+    return register.name if register is not None and register.kind in ("times", "times_since") else None
 
 
 def _time_error(time: Quantity, other: Expr, expr: BinaryExpr, env: Env) -> ResolutionError:

@@ -313,7 +313,8 @@ def _equality(left: Number, sign: str, right: Number) -> State | None:
         opposite = "!=" if sign == "==" else "=="
         return State(f"{left.text} {sign} {right.text}", ATOM, f"{left.text} {opposite} {right.text}")
     number, other = (left, right) if left.term is not None else (right, left)
-    ends = number.ends
+    # 0 needs no unit.
+    ends = tuple("0" if other.text == "0" == end.split(" ")[0] else end for end in number.ends)
     if len(ends) == 2 and other.text in ends:
         state = comparison(number, ">=" if other.text == ends[1] else "<=", other)
     else:

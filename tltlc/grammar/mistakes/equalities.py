@@ -80,7 +80,7 @@ def equality(failure: ParseFailure) -> Diagnostic | None:
             help_ = f"declare whole numbers as such: `signal {name}: int in [{ends}]`; then `{a} {sign} {b}` is right"
             span = span_of(failure.tokens[start:stop])
             return failure.error("TLT0110", title, help_, span=span)
-        elif b in ("0", "1"):
+        elif b in ("0", "1") and not _is_number_signal(failure, (start, at)):
             boolean_text = a if (b == "1") != is_unequal else f"not {a}"
             reason = f", or `{boolean_text}` if its value is true or false"
         elif _is_atom(failure, start, at) and _is_atom(failure, at + 1, stop):
@@ -168,6 +168,12 @@ def _sign_at_end(failure: ParseFailure, side: Range, value: str, is_unequal: boo
     if low == high:
         return ""
     return {(True, False): "<=", (True, True): ">", (False, False): ">=", (False, True): "<"}[low, is_unequal]
+
+
+def _is_number_signal(failure: ParseFailure, side: Range) -> bool:
+    """Whether a side is a signal that is declared as a number."""
+    declared = declared_names(failure.source).names.get(failure.tokens[side[0]].text)
+    return declared is not None and declared.keyword == "signal" and declared.type not in ("bool", "")
 
 
 def _may_be_int(failure: ParseFailure, side: Range) -> bool:

@@ -1,0 +1,66 @@
+"""TLT0453: `a implies times_since(p, a) >= 2`, where the count has just begun anew, and so is 0 or 1."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Final
+
+from tltlc.grammar.tree import CallExpr, Unary
+from tltlc.grammar.walk import conjuncts
+from tltlc.resolve.memory import PAST
+from tltlc.resolve.scope import MEMORY_FUNCTIONS
+from tltlc.tools.lint.asked_results import AskedResult, asked_results
+from tltlc.tools.lint.file_view import FileView, ScopedExpression, without_brackets
+from tltlc.tools.lint.rule import LintRule, RuleFinding
+
+_FUNCTIONS: Final = ("times_since", "value_at")
+
+
+def check(view: FileView) -> Iterator[RuleFinding]:
+    """Yield a finding for each `times_since(p, q)` and `value_at(x, q)` that a rule asks for at a step with q."""
+    for spec in view.specs:
+        for clause, value in spec.clauses("keep", "require"):
+            for asked in asked_results(clause, value):
+                if not asked.steps:
+                    yield from _findings(asked, view)
+
+
+def _findings(asked: AskedResult, view: FileView) -> Iterator[RuleFinding]:
+    if not asked.part.depends_on_one_step():
+        return
+    conditions = [asked.condition.with_tree(part) for part in conjuncts(asked.condition.tree)]
+    formulas = [condition.formula() for condition in conditions]
+    for part in _present_parts(asked.part):
+        call = part.tree
+        if not isinstance(call, CallExpr) or call.name not in _FUNCTIONS or call.name in view.env.scope.names:
+            continue
+        event = part.with_tree(without_brackets(call.arguments[1].value))
+        formula = event.formula()
+        if formula is not None and formula in formulas:
+            yield _finding(part, event, asked, view)
+
+
+def _present_parts(asked: ScopedExpression) -> Iterator[ScopedExpression]:
+    """Yield the parts of what is asked for that are about this step, and not those in what is about steps before."""
+    pending = [asked]
+    while pending:
+        part = pending.pop()
+        yield part
+        is_past = isinstance(part.tree, Unary) and part.tree.op in PAST
+        if not is_past and not (isinstance(part.tree, CallExpr) and part.tree.name in MEMORY_FUNCTIONS):
+            pending += reversed(part.children())
+
+
+def _finding(call: ScopedExpression, event: ScopedExpression, asked: AskedResult, view: FileView) -> RuleFinding:
+    assert isinstance(call.tree, CallExpr)
+    of = call.with_tree(without_brackets(call.tree.arguments[0].value)).text
+    if call.tree.name == "times_since":
+        title = f"at a step with `{event.text}`, `{call.text}` has begun anew: it is 1 if `{of}` begins there, else 0"
+        help_ = f"for the count up to the step before, write `previously ({asked.part.text})`"
+    else:
+        title = f"at a step with `{event.text}`, `{call.text}` is `{of}` itself"
+        help_ = f"for the value at the last `{event.text}` before this step, write `previous({call.text})`"
+    return RuleFinding(title, (view.label(call.tree.span),), help_)
+
+
+RULE = LintRule("TLT0453", "warning", check)
