@@ -273,13 +273,15 @@ class Definition(Names):
             last = max((j for j in so_far if self.holds(parts[1], j, scope, len(self.trace))), default=0)
         if name == "value_at":
             return self.number(of, last, scope)
+        if name in ("highest_since", "lowest_since"):
+            values = [self.number(of, j, scope) for j in range(last, i + 1)]
+            return max(values) if name == "highest_since" else min(values)
         truth = [self.holds(of, j, scope, len(self.trace)) for j in so_far]
-        stretch = [now and before for before, now in pairwise(truth)]
         begins = [truth[0], *(now and not before for before, now in pairwise(truth))]
         if name in COUNTS:
             found: float = sum(begins[last:])
-        elif name == "total_time":
-            found = self._seconds(sum(stretch))
+        elif name in ("total_time", "total_time_since"):
+            found = self._seconds(sum(truth[max(last, 1) :]))
         elif name == "time_since":
             found = self._seconds(i - max(j for j in so_far if truth[j])) if any(truth) else inf
         else:

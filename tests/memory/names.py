@@ -10,9 +10,19 @@ from tltlc.grammar.module import Module
 from tltlc.grammar.tree import CallExpr, Expr, GroupExpr, NameExpr, Quantified
 
 COUNTS: Final = ("times", "times_since")
-TIMES: Final = ("time_since", "time_holding", "total_time")
-WITH_EVENT: Final = ("times_since", "value_at")
-MEMORY: Final = (*COUNTS, *TIMES, "previous", "initial", "highest", "lowest", "value_at")
+TIMES: Final = ("time_since", "time_holding", "total_time", "total_time_since")
+WITH_EVENT: Final = ("times_since", "total_time_since", "highest_since", "lowest_since", "value_at")
+MEMORY: Final = (
+    *COUNTS,
+    *TIMES,
+    "previous",
+    "initial",
+    "highest",
+    "lowest",
+    "highest_since",
+    "lowest_since",
+    "value_at",
+)
 """The functions of the trace so far."""
 
 

@@ -91,6 +91,8 @@ class Texts:
             return f"times_since({inner}, {self.past(depth - 1)}{maximum}) {op} {random.choice(('1', '2', '3', 'k'))}"
         if kind < 3:
             function = random.choice(("time_since", "total_time")) if kind == 1 else "time_holding"
+            if random.random() < 0.2:
+                function, inner = "total_time_since", f"{inner}, {self.past(depth - 1)}"
             maximum = f", {self._time()}" if random.random() < 0.3 else ""
             return f"{function}({inner}{maximum}) {op} {self._time()}"
         if kind == 3:
@@ -136,7 +138,8 @@ class Texts:
             inner = self._plain(depth - 1)
             return random.choice((f"abs({inner})", f"min({inner}, hp)", f"-({inner})", f"max(x, {inner}) / 2"))
         if random.random() < 0.2:
-            return f"value_at({self._plain(depth - 1)}, {self.past(depth - 1)})"
+            function = random.choice(("value_at", "highest_since", "lowest_since"))
+            return f"{function}({self._plain(depth - 1)}, {self.past(depth - 1)})"
         return f"{random.choice(('previous', 'initial', 'highest', 'lowest'))}({self._plain(depth - 1)})"
 
 

@@ -93,8 +93,9 @@ class TimedDefinition(Definition):
         if name == "time_since":
             j = max((j for j in range(i + 1) if truth[j]), default=None)
             time_s = inf if j is None else self._time_s(j, i)
-        elif name == "total_time":
-            time_s = sum(self._time_s(j - 1, j) for j in range(1, i + 1) if truth[j - 1] and truth[j])
+        elif name in ("total_time", "total_time_since"):
+            events = [j for j in range(i + 1) if name == "total_time_since" and self.robustness(parts[1], j, scope) > 0]
+            time_s = sum(self._time_s(j - 1, j) for j in range(max([1, *events]), i + 1) if truth[j])
         else:
             time_s = self._time_s(min((j for j in range(i + 1) if all(truth[j:])), default=i), i)
         return min(time_s, self._written_maximum(name, parts, scope))

@@ -247,7 +247,7 @@ class Speaker:
             holds, fails = (
                 f"{count_text(words, operator, number)}{begin}"
                 if register.kind in ("times", "times_since")
-                else time_text(words, register, operator, number)
+                else f"{time_text(words, register, operator, number)}{begin}"
                 for operator in (item.base.operator, item.base.opposite_operator)
             )
             verb = "be" if register.kind == "time_since" else ""
@@ -345,10 +345,15 @@ class Speaker:
         )
 
     def event_text(self, register: Register) -> str:
-        """Return when a register of ``value_at(x, q)`` took its value: "alarm last held"; empty for other registers."""
-        event = counted_since(register) if register.kind == "value_at" else None
+        """Return when a register of ``value_at(x, q)`` took its value: "alarm last held".
+
+        For ``highest_since(x, q)`` and ``lowest_since(x, q)`` this is the event, and for other registers nothing.
+        """
+        event = counted_since(register) if register.kind in VALUES else None
         if event is None:
             return ""
+        if register.kind != "value_at":
+            return self.noun_text(event)
         turn = self._turn(event)
         if turn is not None:
             return f"{turn[0]} last {'began' if turn[1] == 'begin' else 'ended'}"

@@ -30,6 +30,7 @@ _TEXTS: Final[Mapping[RegisterKind, str]] = {
     "time_since": "the time since {0}",
     "time_holding": "how long {0} has held",
     "total_time": "how long {0} has held in all",
+    "total_time_since": "how long {0} has held since {1}",
     "run": "how long {0} had held at the step before",
     "age": "the time since {0} at an earlier step",
     "waiting": "how long {1} has been due after {0}",

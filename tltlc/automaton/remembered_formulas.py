@@ -49,27 +49,27 @@ def counted(register: Register, registers: Mapping[str, Register]) -> Formula | 
     if not isinstance(update, When):
         return None
     condition = update.cases[0][0]
-    if register.kind == "times_since":
+    if register.kind in ("times_since", "total_time_since"):
         condition = update.cases[-1][0]
     if register.kind in ("age", "run"):
         kept = condition.args[0]
         return remembered(kept.name, registers) if isinstance(kept, Before) else None
-    if register.kind in ("times", "times_since", "time_holding", "total_time"):
+    if register.kind in ("times", "times_since", "time_holding"):
         # The second part is about the sample before.
         first = condition.args[0]
         return from_truth(first) if isinstance(first, Condition) else None
-    return from_truth(condition) if register.kind == "time_since" else None
+    return from_truth(condition) if register.kind in ("time_since", "total_time", "total_time_since") else None
 
 
 def counted_since(register: Register) -> Formula | None:
-    """Return q of a register of ``times_since(p, q)`` or ``value_at(x, q)``; None for others."""
+    """Return q of a register of ``times_since(p, q)``, ``value_at(x, q)`` or their like; None for others."""
     update = register.update.args[0] if isinstance(register.update, Op) else register.update
-    if register.kind not in ("times_since", "value_at") or not isinstance(update, When):
+    if not isinstance(update, When):
         return None
-    if register.kind == "value_at":
+    if register.kind in ("highest_since", "lowest_since", "value_at"):
         update = update.otherwise
         return from_truth(update.cases[0][0]) if isinstance(update, When) else None
-    return from_truth(update.cases[1][0])
+    return from_truth(update.cases[1][0]) if register.kind in ("times_since", "total_time_since") else None
 
 
 def remembered(name: str, registers: Mapping[str, Register]) -> Formula | None:

@@ -24,6 +24,8 @@ VALUES: Final = {
     "initial": "the initial {0}",
     "highest": "the highest {0} so far",
     "lowest": "the lowest {0} so far",
+    "highest_since": "the highest {0} since {1}",
+    "lowest_since": "the lowest {0} since {1}",
     "value_at": "the {0} when {1}",
 }
 """What is said of a register, by its kind; 0 stands for the value that it remembers, and 1 for when."""
@@ -94,7 +96,7 @@ def time_text(words: str, register: Register, operator: str, number: str) -> str
     ``words`` are p.
     """
     length = f"{_COMPARED[operator]} {number} s"
-    if register.kind == "total_time":
+    if register.kind in ("total_time", "total_time_since"):
         return f"{words} for {length} in all"
     return f"{length} after {words}" if register.kind == "time_since" else f"{words} for {length}"
 

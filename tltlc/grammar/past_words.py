@@ -43,7 +43,11 @@ FUNCTIONS: Final = {
     ),
     "total_time": PastWord(
         ("total_time(p)", "total_time(p, MAXIMUM)"),
-        "The time for which p has held in all, in s, up to a maximum: the sum of `time_holding(p)` of each stretch.",
+        "The time for which p has held in all, in s, up to a maximum: the lengths of all steps with p together.",
+    ),
+    "total_time_since": PastWord(
+        ("total_time_since(p, q)", "total_time_since(p, q, MAXIMUM)"),
+        "The time for which p has held since the last sample with q, which counts, too, or since the first sample.",
     ),
     "previous": PastWord(
         ("previous(x)",), "The value of x at the sample before; at the first sample, its value there."
@@ -51,6 +55,12 @@ FUNCTIONS: Final = {
     "initial": PastWord(("initial(x)",), "The value of x at the first sample."),
     "highest": PastWord(("highest(x)",), "The greatest value of x so far."),
     "lowest": PastWord(("lowest(x)",), "The least value of x so far."),
+    "highest_since": PastWord(
+        ("highest_since(x, q)",), "The greatest value of x since the last sample with q, or since the first sample."
+    ),
+    "lowest_since": PastWord(
+        ("lowest_since(x, q)",), "The least value of x since the last sample with q, or since the first sample."
+    ),
     "value_at": PastWord(
         ("value_at(x, q)",), "The value of x at the last sample with q; before the first one, its value at the start."
     ),
@@ -67,5 +77,11 @@ SYNONYMS: Final = {
     **dict.fromkeys(("max_so_far", "maximum"), "highest"),
     **dict.fromkeys(("min_so_far", "minimum"), "lowest"),
     "yesterday": "previously",
+    **dict.fromkeys(("count_since", "counts_since", "number_since"), "times_since"),
+    **dict.fromkeys(("total_since", "time_in_all_since", "duration_since"), "total_time_since"),
+    **dict.fromkeys(("max_since", "maximum_since"), "highest_since"),
+    **dict.fromkeys(("min_since", "minimum_since"), "lowest_since"),
+    **dict.fromkeys(("value_when", "at_event", "sample_at"), "value_at"),
+    **dict.fromkeys(("total", "time_total", "cumulative_time"), "total_time"),
 }
 """Names that functions and operators about the past have elsewhere."""

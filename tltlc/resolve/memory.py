@@ -34,8 +34,9 @@ from tltlc.resolve.values import CLOSED, Env, Quantity, Recall, number_text
 PAST: Final = ("once", "historically", "previously", "begins", "ends")
 """The operators with one operand that speak of the trace so far."""
 
-_OF_FORMULAS: Final = ("times", "times_since", "time_since", "time_holding", "total_time")
-_WITH_EVENT: Final = ("times_since", "value_at")
+_OF_FORMULAS: Final = ("times", "times_since", "time_since", "time_holding", "total_time", "total_time_since")
+_COUNTS: Final = ("times", "times_since")
+_WITH_EVENT: Final = ("times_since", "total_time_since", "highest_since", "lowest_since", "value_at")
 """The functions whose second argument is a formula: the event since which, or the state at which, they ask."""
 _MOST_NESTED: Final = 16
 """The most functions of the past that may stand inside each other."""
@@ -228,22 +229,13 @@ def _of_formula(expr: CallExpr, env: Env) -> Quantity:
     event = _operand(expr.arguments[1].value, env) if expr.name in _WITH_EVENT else None
     texts = [ascii_text(operand)] if event is None else [ascii_text(operand), _event_text(expr, event, env)]
     name = f"{expr.name}({', '.join(texts)})"
-    is_time, varies = event is None and expr.name != "times", env.context.clock_varies
+    is_time, varies = expr.name not in _COUNTS, env.context.clock_varies
     unit = _seconds_per_step(expr, env) if is_time else Fraction(1)
     if not env.symbolic:
         if expr.name == "time_since":
             _time_since(operand, expr, env)
         else:
-            kept, begun = _kept(operand, expr, env), _truth(operand, expr, env)
-            step, step_unit = registers.step_length(varies), "s" if varies else "steps"
-            if event is not None:
-                draft = registers.times_since(name, begun, kept, _truth(event, expr, env))
-            elif is_time:
-                timer = registers.time_holding if expr.name == "time_holding" else registers.total_time
-                draft = timer(name, begun, kept, step, step_unit)
-            else:
-                draft = registers.times(name, begun, kept)
-            _register(draft, expr, env)
+            _register(_draft(name, operand, event, expr, env), expr, env)
     dimension = units.TYPES["time"] if is_time else units.PLAIN
     read = Recall(name, unit, is_count=not is_time, is_whole=not (is_time and varies))
     open_value = Quantity(SignalValue(name), dimension, 0.0, inf, name, is_whole=not is_time, recall=read)
@@ -259,6 +251,24 @@ def _of_formula(expr: CallExpr, env: Env) -> Quantity:
         raise problem("TLT0303", title, env.scope.source, limit.span, advice=f"write {wanted}")
     text = f"{name[:-1]}, {number_text(maximum)})"
     return up_to(open_value, maximum, limit, env, text, Label(env.scope.source, limit.span))
+
+
+def _draft(name: str, operand: Formula, event: Formula | None, expr: CallExpr, env: Env) -> RegisterDraft:
+    """Return the register of a count or a time; ``event`` is q of ``times_since(p, q)`` and its like."""
+    truth, varies = _truth(operand, expr, env), env.context.clock_varies
+    unit = "s" if varies else "steps"
+    if expr.name in ("total_time", "total_time_since"):
+        _register(registers.first(), expr, env)
+        length = registers.sample_length(varies)
+        if event is None:
+            return registers.total_time(name, truth, length, unit)
+        return registers.total_time_since(name, truth, _truth(event, expr, env), length, unit)
+    kept = _kept(operand, expr, env)
+    if expr.name == "time_holding":
+        return registers.time_holding(name, truth, kept, registers.step_length(varies), unit)
+    if event is None:
+        return registers.times(name, truth, kept)
+    return registers.times_since(name, truth, kept, _truth(event, expr, env))
 
 
 def _operand(argument: Expr, env: Env) -> Formula:
@@ -331,10 +341,12 @@ def _of_number(expr: CallExpr, env: Env, level: int) -> Quantity:
         "initial": before,
         "highest": Op("max", (before, now)),
         "lowest": Op("min", (before, now)),
+        "value_at": before,
     }
+    update = updates[expr.name.removesuffix("_since")]
     if event is not None:
-        updates[expr.name] = When(((_truth(event, expr, env), now),), before)
-    update = registers.at_first(now, updates[expr.name])
+        update = When(((_truth(event, expr, env), now),), update)
+    update = registers.at_first(now, update)
     unit = str(units.si_unit(value.dimension) or "") if value.dimension else ""
     kind = expr.name
     draft = RegisterDraft(name, kind, unit, low, high, _inside(0.0, low, high), update)  # type: ignore[arg-type]

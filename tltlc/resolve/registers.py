@@ -41,6 +41,7 @@ SATURATING: Final[tuple[RegisterKind, ...]] = (
     "time_holding",
     "times_since",
     "total_time",
+    "total_time_since",
     "samples",
     "elapsed",
     "run",
@@ -138,11 +139,23 @@ def time_holding(name: str, operand: Condition, kept: str, step: Expression, uni
     return RegisterDraft(name, "time_holding", unit, 0.0, None, 0.0, update)
 
 
-def total_time(name: str, operand: Condition, kept: str, step: Expression, unit: str) -> RegisterDraft:
-    """Return the register of ``total_time(p)``: the time between all samples with p that follow another one with p."""
-    both = Condition("and", (operand, holds(Before(kept))))
-    update = When(((both, Op("+", (Before(name), step))),), Before(name))
+def total_time(name: str, operand: Condition, step: Expression, unit: str) -> RegisterDraft:
+    """Return the register of ``total_time(p)``: the lengths of all samples with p together."""
+    update = When(((operand, Op("+", (Before(name), step))),), Before(name))
     return RegisterDraft(name, "total_time", unit, 0.0, None, 0.0, update)
+
+
+def total_time_since(name: str, operand: Condition, event: Condition, step: Expression, unit: str) -> RegisterDraft:
+    """Return the register of ``total_time_since(p, q)``: the lengths of the samples with p since the last q.
+
+    ``event`` is the truth of q. The sample with q counts, and before the first q, all samples do.
+    """
+    cases: tuple[tuple[Condition, Expression], ...] = (
+        (Condition("and", (event, operand)), step),
+        (event, Const(0.0)),
+        (operand, Op("+", (Before(name), step))),
+    )
+    return RegisterDraft(name, "total_time_since", unit, 0.0, None, 0.0, When(cases, Before(name)))
 
 
 def samples() -> RegisterDraft:
@@ -235,6 +248,11 @@ def at_first(value: Expression, otherwise: Expression) -> Expression:
 def step_length(varies: bool) -> Expression:
     """Return the length of a step in the unit of the registers that count time: seconds, or steps on a fixed clock."""
     return StepLength() if varies else Const(1.0)
+
+
+def sample_length(varies: bool) -> Expression:
+    """Return the time from the sample before, in the unit of :func:`step_length`; 0 at the first sample."""
+    return at_first(Const(0.0), step_length(varies))
 
 
 # --- formulas as expressions ------------------------------------------------------------------------

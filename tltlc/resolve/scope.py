@@ -24,10 +24,13 @@ MEMORY_FUNCTIONS = (
     "time_since",
     "time_holding",
     "total_time",
+    "total_time_since",
     "previous",
     "initial",
     "highest",
     "lowest",
+    "highest_since",
+    "lowest_since",
     "value_at",
 )
 """The functions of the trace so far. A declaration may take the name of one: then the name means the declaration."""

@@ -27,10 +27,13 @@ _KINDS: Final[dict[RegisterKind, str]] = {
     "time_holding": "time without a break",
     "times_since": "count since an event",
     "total_time": "time in all",
+    "total_time_since": "time in all since an event",
     "previous": "value before",
     "initial": "first value",
     "highest": "greatest value",
     "lowest": "least value",
+    "highest_since": "greatest value since an event",
+    "lowest_since": "least value since an event",
     "value_at": "value at an event",
     "samples": "count of samples",
     "elapsed": "time since the first sample",
@@ -129,7 +132,7 @@ def _timer(item: Atom, register: Register, registers: Mapping[str, Register], sp
 
 
 def _since(time: str, register: Register, event: str) -> Timer:
-    if register.kind == "total_time":
+    if register.kind in ("total_time", "total_time_since"):
         return Timer(time, f"{event} in all")
     return (
         Timer(time, f"{event} without a break")

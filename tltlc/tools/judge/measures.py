@@ -148,5 +148,5 @@ def _dimension(expression: Expression, fspa: Fspa) -> Dimension | None:
 
 def _dimension_of_register(register: Register) -> Dimension:
     # A time counts steps, which a comparison divides by the rate of the clock.
-    unit = "s" if register.kind in ("time_since", "time_holding", "total_time") else register.unit
+    unit = "s" if register.kind in ("time_since", "time_holding", "total_time", "total_time_since") else register.unit
     return next((dimension for dimension in TYPES.values() if str(si_unit(dimension) or "") == unit), PLAIN)

@@ -21,10 +21,13 @@ _AMOUNTS: Final = (
     "time_since",
     "time_holding",
     "total_time",
+    "total_time_since",
     "age",
     "waiting",
     "highest",
     "lowest",
+    "highest_since",
+    "lowest_since",
 )
 """The ranges of registers of these kinds are divided into bins.
 
