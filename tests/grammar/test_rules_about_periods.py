@@ -37,8 +37,8 @@ EVENTS = [
     ("at most 1 fire between spray and boss_dead", 0, ["f.f.f", "sf", "s.f"], ["sf.f", "bf.f"]),
     ("when fire twice, spray within 0.2 s", 0, ["f.fs", "f.fsf.s", "f..", "f.f.s"], ["f.f....", "f.fsf.f...."]),
     ("when fire twice, spray within 0.2 s", 1, ["f.fs", "f.fsf.f....", "f.."], ["f.f...."]),
-    ("fire at most 0.3 s in total", 0, ["ffff", "ff.ff.ff", "f.f.f.f.f.f"], ["fffff", "ff.ff.ff.ff"]),
-    ("fire at most 0.3 s in total", 1, ["fff", "f.f.f"], ["ffff", "f.f.f.f"]),
+    ("fire at most 0.3 s in total", 0, ["ffff", "f.f.f.f", ".ff.f"], ["fffff", "f.f.f.f.f", ".ff.ff"]),
+    ("fire at most 3 steps in total", 0, ["fff", "f.f.f"], ["ffff", "f.f.f.f"]),
 ]
 NUMBERS = [
     ("at most 1 fire per lap", 0, ([True, False, True], [1, 1, 2]), True),

@@ -15,6 +15,7 @@ from tltlc.resolve.enums import enum_as_formula_error, enum_of
 from tltlc.resolve.imports import library_with
 from tltlc.resolve.problem import ResolutionError, problem
 from tltlc.resolve.scope import FUNCTIONS, MEMORY_FUNCTIONS, Binding, BindingKind, closest_name
+from tltlc.resolve.unknown_functions import function_help
 from tltlc.resolve.values import Entity, Env, Quantity, Unknown
 
 _FORMULA_OPERATORS = (
@@ -69,7 +70,7 @@ def lookup(use: NameExpr | CallExpr, env: Env, kinds: tuple[BindingKind, ...], n
         advice = "`time_since` is one word: write it as in `time_since(p) < 5 s`"
         raise problem("TLT0201", title, source, span, advice=advice)
     gets_help = len(env.context.log) < _MOST_HINTS
-    past = past_words.SYNONYMS.get(use.name) if isinstance(use, CallExpr) and len(use.arguments) == 1 else None
+    past = past_words.SYNONYMS.get(use.name) if isinstance(use, CallExpr) and 1 <= len(use.arguments) <= 2 else None
     if past and not closest_name(use.name, env.scope, kinds, env.local):
         word = past_words.FUNCTIONS.get(past) or past_words.OPERATORS[past]
         advice = f"`{word.forms[0]}` may be meant: {word.meaning}"
@@ -94,6 +95,10 @@ def lookup(use: NameExpr | CallExpr, env: Env, kinds: tuple[BindingKind, ...], n
         hint = f"did you mean `{suggestion}`{via}?"
         raise problem("TLT0201", title, source, span, hint, fixes=(replacement_fix(source, span, suggestion),))
     library = library_with(use.name)
+    unknown = function_help(use, env) if isinstance(use, CallExpr) and not library else None
+    if unknown is not None:
+        title = f"there is no function `{use.name}`"
+        raise problem("TLT0201", title, source, span, advice=unknown[0], fixes=unknown[1])
     line = f"import {library}" if library else _DECLARATIONS[noun].format(name=use.name)
     if library:
         advice = f"`{use.name}` is in the library {library}: add `{line}`"
@@ -122,7 +127,13 @@ def _past_fixes(use: NameExpr | CallExpr, word: str, noun: str, env: Env) -> tup
         operator = "previously" if word == "previous" else word
         is_clear = declaration.type == "bool" and operator in past_words.OPERATORS
         return (replacement_fix(source, use.span, f"{operator} {argument.name}"),) if is_clear else ()
-    is_number = declaration.type != "bool" and word in ("previous", "highest", "lowest")
+    is_number = declaration.type != "bool" and word in (
+        "previous",
+        "highest",
+        "lowest",
+        "highest_since",
+        "lowest_since",
+    )
     return (replacement_fix(source, use.name_span, word),) if is_number else ()
 
 

@@ -29,6 +29,7 @@ from tltlc.resolve.registers import RegisterDraft
 from tltlc.resolve.scope import MEMORY_FUNCTIONS
 from tltlc.resolve.spec import Signal
 from tltlc.resolve.timers import TimerAtoms
+from tltlc.resolve.unknown_functions import earlier_value_help
 from tltlc.resolve.values import CLOSED, Env, Quantity, Recall, number_text
 
 PAST: Final = ("once", "historically", "previously", "begins", "ends")
@@ -211,7 +212,8 @@ def recall(expr: CallExpr, env: Env, level: int) -> Quantity:
             title = f"`{expr.name}` takes one {first}"
         else:
             title = f"`{expr.name}` takes {'two formulas' if is_of_formula else 'a number and a formula'}"
-        raise problem("TLT0210", title, env.scope.source, expr.span, advice=f"write {form}")
+        advice = earlier_value_help(expr, env) or f"write {form}"
+        raise problem("TLT0210", title, env.scope.source, expr.span, advice=advice)
     if env.context.recalls >= _MOST_NESTED:
         title = f"functions of the past stand more than {_MOST_NESTED} deep inside each other"
         advice = "let the game compute the value and supply it as a signal"

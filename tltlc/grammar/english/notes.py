@@ -26,7 +26,8 @@ _AWAITING: Final = ("F", "X", "U", "M", "then", "within")
 _OF_CALLS: Final = {
     "times": "`{call}` counts how often `{0}` begins: steps in a row count once",
     "times_since": "`{call}` counts how often `{0}` begins, anew from each step with `{1}` on",
-    "total_time": "`{call}` adds up the stretches with `{0}`, each from 0 s at its first step",
+    "total_time": "`{call}` adds up the lengths of all steps with `{0}`",
+    "total_time_since": "`{call}` adds up the lengths of the steps with `{0}`, anew from each step with `{1}` on",
     "value_at": "`{call}` is the value at the first step until the first step with `{1}`",
 }
 """What the functions of the trace so far are, where a reader may expect something else."""

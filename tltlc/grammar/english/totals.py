@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from math import ceil
 from typing import Final
 
 from tltlc.core.record import replace
@@ -16,8 +15,6 @@ from tltlc.grammar.mistakes.sentences.vocabulary import NEGATED_SIGN
 
 _MOST_TOTAL: Final = 6
 """The most steps of a total of which a clause counts each."""
-_LONGEST_TOTAL: Final = "1 h"
-"""The maximum of a time in total that is compared with its value at an event."""
 
 _Found = Reading | list[Reading] | None
 
@@ -26,33 +23,23 @@ class Totals(Differences):
     """The meanings of the rules about times in total."""
 
     def total(self, state: State, sign: str, duration: Duration) -> _Found:
-        """Return the rule of `seen at most 30 s in total`; for a few steps, also the one that counts each step."""
-        if duration.is_steps and float(duration.number) > _MOST_TOTAL:
-            self.limits.append(
-                f"no clause can say at how many steps `{state.text}` holds in total, only for how long: "
-                f"`keep total_time({state.text}) <= 5 s`"
-            )
-            return None
-        if duration.is_steps:
+        """Return the rule of `seen at most 30 s in total`; without a clock, few steps are counted one by one."""
+        if duration.is_steps and (not self._step_s or float(duration.number) <= _MOST_TOTAL):
             return super().total(state, sign, duration)
         if sign not in ("<=", "<", ">=", ">") or state.level > AND:
             return None
         keyword = "keep" if sign in ("<=", "<") else "reach"
-        whole = Reading((f"{keyword} total_time({without_brackets(state.text)}) {sign} {duration.text}",))
-        steps = round(self.steps(duration), 6)
+        whole = Reading((f"{keyword} total_time({without_brackets(state.text)}) {sign} {self._in_seconds(duration)}",))
         if is_negative(state) and keyword == "reach":
             denied = f"keep total_time({state.negated().text}) {NEGATED_SIGN[sign]} {duration.text}"
             return [
                 replace(whole, condition=f"for the time with `{state.text}`"),
                 Reading((denied,), f"for that with `{state.negated().text}`"),
             ]
-        if keyword == "reach" or not 0 < steps <= _MOST_TOTAL:
-            return whole
-        number = int(steps) if sign == "<=" else ceil(steps) - 1
-        return [
-            replace(whole, condition="if the first step of each stretch counts 0 s"),
-            Reading((f"avoid {' then '.join([state.at(OR)] * (number + 1))}",), "if each step counts"),
-        ]
+        return whole
+
+    def _in_seconds(self, duration: Duration) -> str:
+        return f"{self.steps(duration) * self._step_s:.10g} s" if duration.is_steps else duration.text
 
     def total_reached(self, state: State, duration: Duration) -> _Found:
         return self.total(state, ">=", duration)
@@ -101,10 +88,8 @@ class Totals(Differences):
         """Return the rule of `seen at most 9 s in total per storm`: by how much the time in total has grown."""
         if sign not in ("<=", "<") or duration.is_steps:
             return None
-        total = f"total_time({state.text}, {_LONGEST_TOTAL})"
         inside = "" if period.state is None else f"{period.state.at(OR)} implies "
-        clause = f"keep {inside}{total} - value_at({total}, {period.event.text}) {sign} {duration.text}"
-        return Reading((clause,), f"if `{state.text}` holds for at most {_LONGEST_TOTAL} of all play")
+        return Reading((f"keep {inside}total_time_since({state.text}, {period.event.text}) {sign} {duration.text}",))
 
     def time_in_each(self, state: State, sign: str, duration: Duration, period: Period) -> _Found:
         total = self.total_in_each(state, sign, duration, period)

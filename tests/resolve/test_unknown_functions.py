@@ -1,0 +1,76 @@
+"""Calls of functions that do not exist, or not with these arguments."""
+
+from __future__ import annotations
+
+import pytest
+
+from tltlc.core.source import SourceFile
+from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.pipeline import compile_source
+
+HEAD = "clock 10 Hz\nsignal a: bool\nsignal x in [0, 100]\nsignal turn: int in [0, 9]\nsignal mode: (idle, alert)\n"
+
+
+def first_error(text: str) -> Diagnostic:
+    with pytest.raises(TltlError) as raised:
+        compile_source(SourceFile("a.tltl", text))
+    return raised.value.diagnostics[0]
+
+
+@pytest.mark.parametrize(
+    ("clause", "written"),
+    [
+        ("keep changed(turn) implies a", "turn != previous(turn)"),
+        ("keep a implies not changed(a)", "(begins a or ends a)"),
+        ("keep changed(x) implies a", "(x < previous(x) or x > previous(x))"),
+        ("keep delta(turn) <= 3", "(turn - previous(turn))"),
+    ],
+)
+def test_a_function_that_says_the_same_as_others_gets_a_fix(clause: str, written: str) -> None:
+    error = first_error(f"{HEAD}spec s {{ {clause} }}")
+    assert (error.code, error.help) == ("TLT0201", f"write `{written}`")
+    assert error.fixes[0].edits[0].text == written
+
+
+@pytest.mark.parametrize(
+    ("number", "form"),
+    [
+        ("total_in(a, a) <= 60 s", "total_time(p)"),
+        ("min_since(x, a) > 3", "lowest_since(x, q)"),
+        ("max_since(x, a) > 3", "highest_since(x, q)"),
+        ("count_since(a, begins a) > 3", "times_since(p, q)"),
+        ("times_sinse(a, a) > 3", "times_since(p, q)"),
+    ],
+)
+def test_a_call_of_an_unknown_function_names_those_that_are_like_it(number: str, form: str) -> None:
+    error = first_error(f"{HEAD}spec s {{ keep {number} }}")
+    assert error.code == "TLT0201"
+    assert f"`{form}`" in (error.help or "") or error.fixes[0].edits[0].text == form.partition("(")[0]
+    assert "declare" not in (error.help or "")
+
+
+def test_a_call_that_is_like_no_function_gets_a_list_of_them() -> None:
+    error = first_error(f"{HEAD}spec s {{ keep foo(a, x > 3) <= 3 }}")
+    assert error.title == "there is no function `foo`"
+    assert "`total_time_since(p, q)`" in (error.help or "")
+
+
+def test_a_predicate_of_entities_may_still_be_declared() -> None:
+    error = first_error(f"{HEAD}entity key\nspec s {{ reach shiny(key) }}")
+    assert "declare it" in (error.help or "")
+
+
+@pytest.mark.parametrize(
+    ("call", "text"),
+    [
+        ("previous(x, 0.2 s)", "for 2 steps before, write `previous(previous(x))`"),
+        ("previous(x, 3)", "write `previous(previous(previous(x)))`"),
+        ("previous(x, 2 steps)", "write `previous(previous(x))`"),
+        ("previous(x, 20 s)", "no short clause says what `x` was 20 s before"),
+        ("previous(x, a)", "write `previous(x)`"),
+    ],
+)
+def test_an_earlier_value_keeps_its_time(call: str, text: str) -> None:
+    error = first_error(f"{HEAD}spec s {{ keep x >= {call} - 5 }}")
+    assert error.code == "TLT0210"
+    assert text in (error.help or "")

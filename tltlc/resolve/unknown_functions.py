@@ -1,0 +1,103 @@
+"""Help with calls of functions that do not exist, or not with these arguments."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from tltlc.diagnostics.diagnostic import Fix, replacement_fix
+from tltlc.grammar.past_words import FUNCTIONS, PastWord
+from tltlc.grammar.tree import CallExpr, Expr, GroupExpr, NameExpr, NumberExpr, SignalDecl
+from tltlc.resolve import units
+from tltlc.resolve.values import Env
+
+_CHANGES: Final = ("changed", "changes", "change", "has_changed", "did_change")
+_DIFFERENCES: Final = ("delta", "diff", "difference")
+_LIKE: Final = 0.6
+"""How like a name must be to that of a function, from 0 to 1."""
+_MOST_STEPS: Final = 10
+"""The most steps back for which a help writes `previous` in each other."""
+_MOST_NAMED: Final = 2
+"""The most functions that a help names with their meaning."""
+
+
+def function_help(call: CallExpr, env: Env) -> tuple[str, tuple[Fix, ...]] | None:
+    """Return the help for a call of an unknown function, and its fixes; None if a predicate may be meant.
+
+    The arguments of a predicate that is still to be declared are mostly entities.
+    """
+    if not call.arguments or not any(_is_value(argument.value, env) for argument in call.arguments):
+        return None
+    written = _in_other_words(call, env)
+    if written is not None:
+        return f"write `{written}`", (replacement_fix(env.scope.source, call.span, written),)
+    near = _near(call.name)
+    if near:
+        return "; or ".join(f"`{word.forms[0]}` may be meant: {word.meaning.rstrip('.')}" for word in near), ()
+    forms = ", ".join(f"`{word.forms[0]}`" for word in FUNCTIONS.values())
+    return f"the functions of the trace so far are {forms}; p and q are true or false, and x is a number", ()
+
+
+def earlier_value_help(call: CallExpr, env: Env) -> str | None:
+    """Return the help for ``previous(x, 1 s)``; None for other calls."""
+    if call.name != "previous" or len(call.arguments) != 2:
+        return None
+    of, time = (env.scope.source.slice(argument.value.span) for argument in call.arguments)
+    steps = _steps_of(call.arguments[1].value, env)
+    if steps is None:
+        return None
+    one = f"`previous({of})` is the value one step before"
+    if steps > _MOST_STEPS:
+        return f"{one}, and no short clause says what `{of}` was {time} before: let the game supply it as a signal"
+    return f"{one}: for {steps} steps before, write `{'previous(' * steps}{of}{')' * steps}`"
+
+
+def _steps_of(time: Expr, env: Env) -> int | None:
+    """Return how many steps a time or a number is; None if that is not known, or no step."""
+    if not isinstance(time, NumberExpr):
+        return None
+    steps = time.value
+    if time.unit not in (None, "step", "steps"):
+        in_si, period = units.in_si(time.value, time.unit), env.context.clock_s
+        if in_si is None or in_si[1] != units.TYPES["time"] or not period or env.context.clock_varies:
+            return None
+        steps = in_si[0] / period
+    return round(steps) if round(steps) >= 1 and abs(steps - round(steps)) < 1e-6 else None
+
+
+def _is_value(argument: Expr, env: Env) -> bool:
+    """Whether an argument is a number or a formula: anything but the name of an entity, or of nothing."""
+    if not isinstance(argument, NameExpr):
+        return True
+    binding = env.scope.names.get(argument.name)
+    return binding is not None and binding.kind not in ("entity", "group")
+
+
+def _near(name: str) -> list[PastWord]:
+    """Return the functions whose names are like a name, or share a word with it, best first."""
+    from difflib import get_close_matches
+
+    known = get_close_matches(name.lower(), FUNCTIONS, n=_MOST_NAMED, cutoff=_LIKE)
+    words = set(name.lower().split("_"))
+    known += [other for other in FUNCTIONS if other not in known and len(words & set(other.split("_"))) > 0]
+    return [FUNCTIONS[other] for other in known[:_MOST_NAMED]]
+
+
+def _in_other_words(call: CallExpr, env: Env) -> str | None:
+    """Return what says the same as ``changed(x)`` or ``delta(x)`` of a signal; None for other functions."""
+    if len(call.arguments) != 1:
+        return None
+    argument = call.arguments[0].value
+    while isinstance(argument, GroupExpr):
+        argument = argument.inner
+    binding = env.scope.names.get(argument.name) if isinstance(argument, NameExpr) else None
+    declared = None if binding is None else binding.declaration
+    if not isinstance(declared, SignalDecl) or declared.values or not isinstance(argument, NameExpr):
+        return None
+    x = argument.name
+    if call.name.lower() in _DIFFERENCES:
+        return None if declared.type == "bool" else f"({x} - previous({x}))"
+    if call.name.lower() not in _CHANGES:
+        return None
+    if declared.type == "bool":
+        return f"(begins {x} or ends {x})"
+    return f"{x} != previous({x})" if declared.type == "int" else f"({x} < previous({x}) or {x} > previous({x}))"
