@@ -109,7 +109,7 @@ def test_a_count_of_two_within_a_time_has_a_clause() -> None:
 )
 def test_a_count_since_an_event_has_a_function(clause: str, event: str) -> None:
     help_ = error_of(clause).help or ""
-    assert help_.endswith(f"`times_since(hit, {event})` counts from the last step with `{event}` on")
+    assert help_.endswith(f"`times_since(hit, {event})` about those from the last step with `{event}` on")
 
 
 @pytest.mark.parametrize(

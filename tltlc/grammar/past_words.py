@@ -67,6 +67,14 @@ FUNCTIONS: Final = {
 }
 """The functions by their names, which are not reserved."""
 
+SINCE: Final = {
+    "times": "times_since",
+    "total_time": "total_time_since",
+    "highest": "highest_since",
+    "lowest": "lowest_since",
+}
+"""The functions that begin anew at an event, by those that begin at the first sample."""
+
 SYNONYMS: Final = {
     **dict.fromkeys(("count", "counter", "count_of"), "times"),
     **dict.fromkeys(("prev", "pre", "old"), "previous"),

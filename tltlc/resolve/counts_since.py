@@ -1,4 +1,4 @@
-"""Refuse ``times(p) since q``, and offer ``times_since(p, q)``, which counts since an event."""
+"""Refuse ``times(p) since q``, and offer ``times_since(p, q)``; in the same way for totals and greatest values."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from typing import Final, TypeGuard
 from tltlc.core.source import Span
 from tltlc.diagnostics.diagnostic import Fix, replacement_fix
 from tltlc.grammar.mistakes.compared_tests import COUNT_SINCE
+from tltlc.grammar.past_words import SINCE
 from tltlc.grammar.tree import BinaryExpr, CallExpr, Expr, GroupExpr, NumberExpr, Unary
 from tltlc.resolve.kinds import kind_of
 from tltlc.resolve.problem import problem
@@ -19,7 +20,7 @@ def check_no_count(expr: BinaryExpr, env: Env) -> None:
     """Raise ResolutionError (TLT0301) if p is a count in ``p since q``, as in ``times(p) since q <= 3``."""
     if _is_count(expr.left, env):
         advice, title = count_since_help(expr, env), "expected a formula, found a number"
-        fixes = (_fix(expr, expr, env),)
+        fixes = (_fix(expr, env),)
         raise problem("TLT0301", title, env.scope.source, expr.left.span, advice=advice, fixes=fixes)
 
 
@@ -35,7 +36,7 @@ def check_not_compared(expr: BinaryExpr, env: Env) -> None:
 
 def count_since_help(expr: BinaryExpr, env: Env) -> str:
     """Return the help for ``times(p) since q``, or for ``p since q`` where p is to be counted."""
-    return COUNT_SINCE.format(counted=_counted(expr, env), event=_event(expr, env))
+    return COUNT_SINCE.format(function=_function(expr, env), counted=_counted(expr, env), event=_event(expr, env))
 
 
 def is_count_since(expr: Expr, env: Env) -> TypeGuard[BinaryExpr]:
@@ -43,12 +44,20 @@ def is_count_since(expr: Expr, env: Env) -> TypeGuard[BinaryExpr]:
     return isinstance(expr, BinaryExpr) and expr.op == "since" and _is_count(expr.left, env)
 
 
-def _fix(expr: BinaryExpr, replaced: BinaryExpr, env: Env) -> Fix:
+def _fix(expr: BinaryExpr, env: Env) -> Fix:
     """Return the fix that writes ``times_since(p, q)`` for an expression, which is ``times(p) since q`` so far."""
-    text = f"times_since({_counted(expr, env)}, {_event(expr, env)})"
+    text = f"{SINCE[_function(expr, env)]}({_counted(expr, env)}, {_event(expr, env)})"
     end = _comparison(expr.right)
-    span = Span(replaced.span.start, end.left.span.end if end else replaced.span.end)
+    span = Span(expr.span.start, end.left.span.end if end else expr.span.end)
     return replacement_fix(env.scope.source, span, text)
+
+
+def _function(expr: BinaryExpr, env: Env) -> str:
+    """Return the name of the function in ``times(p) since q``; ``times`` for ``p since q``."""
+    left: Expr = expr.left
+    while isinstance(left, GroupExpr):
+        left = left.inner
+    return left.name if isinstance(left, CallExpr) and _is_count(left, env) else "times"
 
 
 def _counted(expr: BinaryExpr, env: Env) -> str:
@@ -68,10 +77,10 @@ def _event(expr: BinaryExpr, env: Env) -> str:
 
 
 def _is_count(expr: Expr, env: Env) -> bool:
-    """Whether an expression is a use of ``times``, perhaps in brackets."""
+    """Whether an expression is a use of ``times``, ``total_time``, ``highest`` or ``lowest``, perhaps in brackets."""
     while isinstance(expr, GroupExpr):
         expr = expr.inner
-    return isinstance(expr, CallExpr) and expr.name == "times" and expr.name not in env.scope.names
+    return isinstance(expr, CallExpr) and expr.name in SINCE and expr.name not in env.scope.names
 
 
 def _comparison(expr: Expr) -> BinaryExpr | None:

@@ -31,6 +31,7 @@ _OF_CALLS: Final = {
     "value_at": "`{call}` is the value at the first step until the first step with `{1}`",
 }
 """What the functions of the trace so far are, where a reader may expect something else."""
+_OF_EVENTS: Final = ("times_since", "total_time_since", "highest_since", "lowest_since", "value_at")
 _MOST_STEPS: Final = 100
 """With more steps, one more or less is hardly noticed."""
 
@@ -93,7 +94,7 @@ def _is_since(expression: Expr) -> TypeGuard[CallExpr]:
     """Whether an expression is a function of an event: `times_since(p, q)`, `value_at(x, q)`."""
     if not isinstance(expression, CallExpr):
         return False
-    return expression.name in ("times_since", "value_at") and len(expression.arguments) > 1
+    return expression.name in _OF_EVENTS and len(expression.arguments) > 1
 
 
 def _is_after_event(call: CallExpr, source: SourceFile) -> bool:

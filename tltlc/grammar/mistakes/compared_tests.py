@@ -8,10 +8,11 @@ from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.grammar.mistakes.declared_names import declared_names
 from tltlc.grammar.mistakes.parse_failure import COMPARISONS, ParseFailure, quote_token
 from tltlc.grammar.mistakes.rephrasing import operand_end, operand_start, text_of
+from tltlc.grammar.past_words import SINCE
 
 COUNT_SINCE: Final = (
-    "`times({counted})` counts from the first step on; "
-    "`times_since({counted}, {event})` counts from the last step with `{event}` on"
+    "`{function}({counted})` is about all steps so far, "
+    "`{function}_since({counted}, {event})` about those from the last step with `{event}` on"
 )
 
 
@@ -28,12 +29,12 @@ def compared_test(failure: ParseFailure) -> Diagnostic | None:
     title = f"{quote_token(failure.token)} compares numbers, and `{test}` is true or false"
     since = next((index for index in range(at - 1, 0, -1) if tokens[index].text == "since"), 0)
     counted = operand_start(tokens, since) if since else None
-    if counted is not None and tokens[counted].text == "times" and operand_end(tokens, counted) == since:
+    if counted is not None and tokens[counted].text in SINCE and operand_end(tokens, counted) == since:
         if start is None:
             title = "comparisons cannot be chained"
         comma = next((index for index in range(counted + 2, since) if tokens[index].text == ","), since - 1)
         texts = text_of(failure, counted + 2, comma), text_of(failure, since + 1, at)
-        help_ = COUNT_SINCE.format(counted=texts[0], event=texts[1])
+        help_ = COUNT_SINCE.format(function=tokens[counted].text, counted=texts[0], event=texts[1])
     elif start is None:
         return None
     elif tokens[at + 1].type == "NUMBER":

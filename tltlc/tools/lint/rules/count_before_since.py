@@ -8,6 +8,7 @@ from typing import Final
 from tltlc.core.source import SourceFile, Span
 from tltlc.diagnostics.diagnostic import Label
 from tltlc.grammar import walk
+from tltlc.grammar.past_words import SINCE
 from tltlc.grammar.tree import BinaryExpr, CallExpr, LetDecl, SpecDecl
 from tltlc.tools.lint.file_view import FileView
 from tltlc.tools.lint.rule import LintRule, RuleFinding
@@ -16,7 +17,7 @@ _COMPARISONS: Final = ("<", "<=", ">", ">=", "==", "!=")
 
 
 def check(view: FileView) -> Iterator[RuleFinding]:
-    """Yield a finding for each comparison of `times` with a number that stands before `since` without brackets."""
+    """Yield a finding for each comparison of `times` and its like that stands before `since` without brackets."""
     for declaration in view.module.declarations:
         if isinstance(declaration, (LetDecl, SpecDecl)):
             for expression in walk.expressions(declaration):
@@ -30,16 +31,16 @@ def _findings(part: BinaryExpr, source: SourceFile) -> Iterator[RuleFinding]:
     if not isinstance(compared, BinaryExpr) or compared.op not in _COMPARISONS:
         return
     count = compared.left
-    if not isinstance(count, CallExpr) or count.name != "times" or len(count.arguments) != 1:
+    if not isinstance(count, CallExpr) or count.name not in SINCE or len(count.arguments) != 1:
         return
     counted, event = _text(count.arguments[0].value.span, source), _text(part.right.span, source)
     comparison, rest = _text(compared.span, source), _text(Span(count.span.end, compared.span.end), source)
     label = Label(source, part.span, f"read as `({comparison}) since {event}`")
     help_ = (
-        f"write `times_since({counted}, {event}) {rest}` to count since `{event}`, "
+        f"write `{SINCE[count.name]}({counted}, {event}) {rest}` for what has been since `{event}`, "
         f"or `({comparison}) since {event}` if you mean this"
     )
-    yield RuleFinding(f"`{_text(count.span, source)}` counts from the first step on", (label,), help_)
+    yield RuleFinding(f"`{_text(count.span, source)}` begins at the first step", (label,), help_)
 
 
 def _text(span: Span, source: SourceFile) -> str:

@@ -13,7 +13,7 @@ from tltlc.tools.lint.asked_results import AskedResult, asked_results
 from tltlc.tools.lint.file_view import FileView, ScopedExpression, without_brackets
 from tltlc.tools.lint.rule import LintRule, RuleFinding
 
-_FUNCTIONS: Final = ("times_since", "value_at")
+_FUNCTIONS: Final = ("times_since", "total_time_since", "highest_since", "lowest_since", "value_at")
 
 
 def check(view: FileView) -> Iterator[RuleFinding]:
@@ -54,9 +54,9 @@ def _present_parts(asked: ScopedExpression) -> Iterator[ScopedExpression]:
 def _finding(call: ScopedExpression, event: ScopedExpression, asked: AskedResult, view: FileView) -> RuleFinding:
     assert isinstance(call.tree, CallExpr)
     of = call.with_tree(without_brackets(call.tree.arguments[0].value)).text
-    if call.tree.name == "times_since":
-        title = f"at a step with `{event.text}`, `{call.text}` has begun anew: it is 1 if `{of}` begins there, else 0"
-        help_ = f"for the count up to the step before, write `previously ({asked.part.text})`"
+    if call.tree.name in ("times_since", "total_time_since"):
+        title = f"at a step with `{event.text}`, `{call.text}` has begun anew: it is about `{of}` at that step alone"
+        help_ = f"for what was up to the step before, write `previously ({asked.part.text})`"
     else:
         title = f"at a step with `{event.text}`, `{call.text}` is `{of}` itself"
         help_ = f"for the value at the last `{event.text}` before this step, write `previous({call.text})`"
