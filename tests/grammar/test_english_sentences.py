@@ -88,6 +88,8 @@ ONE_READING = {
     "fire at most 3 times in total": ["keep times(fire) <= 3"],
     "fire total time under 20 s": ["keep total_time(fire) < 20 s"],
     "fire for at most 4 s in total": ["keep total_time(fire) <= 4 s"],
+    "fire for at most 60 s in all since spray": ["keep total_time_since(fire, spray) <= 60 s"],
+    "keep fire at most 60 s since the last spray": ["keep total_time_since(fire, spray) <= 60 s"],
     "fire for at most 20 steps in total": ["keep total_time(fire) <= 2 s"],
     "total time fire at most 30 s": ["keep total_time(fire) <= 30 s"],
     "total(fire) <= 30 s": ["keep total_time(fire) <= 30 s"],
@@ -571,9 +573,9 @@ SEVERAL_READINGS = {
     "fire for at most 9 s in each lap": [
         (
             "keep total_time_since(fire, lap != previous(lap)) <= 9 s",
-            "for all stretches with `fire` together",
+            "if each `lap != previous(lap)` begins a new count",
         ),
-        ("keep time_holding(fire) <= 9 s", "for each stretch"),
+        ("keep time_holding(fire) <= 9 s", "for each stretch with `fire`"),
     ],
     "not fire for at least 60 s in total": [
         ("reach total_time(not fire) >= 60 s", "for the time with `not fire`"),

@@ -73,34 +73,42 @@ class Totals(Differences):
         total = self.total(both, operator, duration) if both.level <= AND else None
         whole = total[0] if isinstance(total, list) else total
         period = self.stretch_of(during)
-        each = None if period is None else self.total_in_each(state, operator, duration, period)
-        if whole is None or each is None:
+        totals = None if period is None else self.total_in_each(state, operator, duration, period)
+        if whole is None or totals is None:
             return whole
         return [
             replace(whole, condition=f"if all steps with `{during.text}` count together"),
-            replace(each, condition=f"if each `{during.text}` counts anew"),
+            replace(totals[-1], condition=f"if each `{during.text}` counts anew"),
         ]
 
     def total_time_while(self, state: State, during: State, sign: str | Term, duration: Duration) -> _Found:
         return self.total_while(state, sign, duration, during)
 
-    def total_in_each(self, state: State, sign: str, duration: Duration, period: Period) -> Reading | None:
-        """Return the rule of `seen at most 9 s in total per storm`: by how much the time in total has grown."""
+    def total_in_each(self, state: State, sign: str, duration: Duration, period: Period) -> list[Reading] | None:
+        """Return the rules of `seen at most 9 s in total per storm`: from each storm to the next, or while it lasts."""
         if sign not in ("<=", "<") or duration.is_steps:
             return None
-        inside = "" if period.state is None else f"{period.state.at(OR)} implies "
-        return Reading((f"keep {inside}total_time_since({state.text}, {period.event.text}) {sign} {duration.text}",))
+        rule = f"total_time_since({state.text}, {period.event.text}) {sign} {duration.text}"
+        anew = Reading((f"keep {rule}",), f"if each `{period.event.text}` begins a new count")
+        if period.state is None:
+            return [anew]
+        inside = period.state.at(OR)
+        return [anew, Reading((f"keep {inside} implies {rule}",), f"if it counts only while `{inside}` holds")]
+
+    def total_since(self, state: State, sign: str, duration: Duration, event: State) -> Reading | None:
+        """Return the rule of `seen at most 9 s in total since the checkpoint`."""
+        if sign not in ("<=", "<") or duration.is_steps:
+            return None
+        texts = f"{without_brackets(state.text)}, {without_brackets(event.text)}"
+        return Reading((f"keep total_time_since({texts}) {sign} {duration.text}",))
 
     def time_in_each(self, state: State, sign: str, duration: Duration, period: Period) -> _Found:
-        total = self.total_in_each(state, sign, duration, period)
-        if total is None:
+        totals = self.total_in_each(state, sign, duration, period)
+        if totals is None:
             return None
         inside = "" if period.state is None else f"{period.state.at(OR)} implies "
         each = f"keep {inside}time_holding({state.text}) {sign} {duration.text}"
-        return [
-            replace(total, condition=f"for all stretches with `{state.text}` together"),
-            Reading((each,), "for each stretch"),
-        ]
+        return [*totals, Reading((each,), f"for each stretch with `{state.text}`")]
 
     def time_first_in_each(self, sign: str, duration: Duration, state: State, period: Period) -> _Found:
         return self.time_in_each(state, sign, duration, period)
