@@ -56,7 +56,7 @@ def _notes(expression: Expr, source: SourceFile, step_s: float) -> Iterator[tupl
         if isinstance(part, CallExpr):
             arguments = [source.slice(argument.span) for argument in part.arguments]
             note = _OF_CALLS.get(part.name, "")
-            if note and not (part.name == "value_at" and _is_after_event(part, source)):
+            if note and not (part.name == "value_at" and _is_after_event(part, expression, source)):
                 call = source.slice(part.span)
                 yield note.format(*arguments, call=call), (f"{part.name}(",)
         elif isinstance(part, Unary) and part.op == "begins" and id(part) not in events:
@@ -97,10 +97,18 @@ def _is_since(expression: Expr) -> TypeGuard[CallExpr]:
     return expression.name in _OF_EVENTS and len(expression.arguments) > 1
 
 
-def _is_after_event(call: CallExpr, source: SourceFile) -> bool:
-    """Whether a value at an event is asked for only after that event: `a implies x >= value_at(x, begins a)`."""
-    event = source.slice(call.arguments[1].span).removeprefix("begins ").strip("()")
-    return any(f"{before}{event} implies " in source.text for before in ("keep ", "keep ends ", "keep begins "))
+def _is_after_event(call: CallExpr, rule: Expr, source: SourceFile) -> bool:
+    """Whether a rule asks for a value at an event only after that event: `a implies x >= value_at(x, begins a)`."""
+    if not isinstance(rule, BinaryExpr) or rule.op != "implies":
+        return False
+    return _state_text(rule.left, source) == _state_text(call.arguments[1].value, source)
+
+
+def _state_text(event: Expr, source: SourceFile) -> str:
+    """Return the text of a in `begins a`, `ends a` and `a`, without brackets around it."""
+    while isinstance(event, GroupExpr) or (isinstance(event, Unary) and event.op in ("begins", "ends")):
+        event = event.inner if isinstance(event, GroupExpr) else event.operand
+    return source.slice(event.span)
 
 
 def equality_notes(clauses: str, typed: str) -> tuple[str, ...]:
