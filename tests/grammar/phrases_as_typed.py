@@ -24,7 +24,7 @@ FOLDER = Path(__file__).parent / "phrases"
 MOST_ROUNDS = 3
 """The most fixes that are applied to one phrase, each for another error."""
 _KEYWORDS = ("reach", "keep", "avoid", "require", "limit")
-NO_CLAUSE = "no clause can say"
+NO_CLAUSE = ("no clause can say", "no short clause can say")
 """What the help of an ``unsayable`` phrase says."""
 
 Kind = Literal["right", "helped", "named", "not helped", "warned", "wrong"]
@@ -152,7 +152,8 @@ def outcome(phrase: Phrase) -> Outcome:
     typed = spec_text(phrase, phrase.typed)
     text, left = fix(typed)
     if left:
-        if phrase.unsayable and text == typed and any(NO_CLAUSE in (error.help or "") for error in left):
+        is_limit = any(limit in (error.help or "") for limit in NO_CLAUSE for error in left)
+        if phrase.unsayable and text == typed and is_limit:
             return Outcome("helped", text, left[0].help or "")
         kind: Kind = "named" if _is_named(phrase, text, left) else "not helped"
         return Outcome(kind, text, f"{left[0].title}; {left[0].help}")

@@ -163,7 +163,6 @@ ONE_READING = {
     "fire starts only if spray for at least 5 s": ["keep begins fire implies time_holding(spray) >= 5 s"],
     "fire only after spray for 3 s": ["keep begins fire implies time_holding(spray) >= 3 s"],
     "avoid fire unless spray since last fire": ["keep fire implies previously (not fire since (spray and not fire))"],
-    "while fire keep health unchanged": ["keep fire implies health >= previous(health) and health <= previous(health)"],
     "keep health never decreases unless fire": ["keep health >= previous(health) or fire"],
     "whenever fire then spray or boss_dead within 5 s unless phase is menu": [
         "keep within 5 s of fire, spray or boss_dead or phase is menu"
@@ -313,6 +312,12 @@ ONE_READING = {
     "coins never increases by more than 2": ["keep coins <= previous(coins) + 2"],
     "health never drops below 20": ["keep health >= 20"],
     "health stays above 20": ["keep health > 20"],
+    "when health falls below 20 then spray within 1 s for at least 3 s": [
+        "keep begins (health < 20) implies eventually within 1 s always for 3 s spray"
+    ],
+    "when fire, spray within 1 s for 3 s": ["keep fire implies eventually within 1 s always for 3 s spray"],
+    "no fire for 2 s after spray starts": ["keep begins spray implies always for 2 s not fire"],
+    "keep boss_dead for 2 s after spray": ["keep spray implies always for 2 s boss_dead"],
     "phase stays menu or shift": ["keep phase is menu or phase is shift"],
     "if fire then spray within a second": ["keep within 1 s of fire, spray"],
     # How long each stretch lasts, and how often.
@@ -376,9 +381,6 @@ ONE_READING = {
     "health doesn't stay the same for more than 3 s": [
         "avoid time_holding(health <= previous(health) and health >= previous(health)) > 3 s"
     ],
-    "while fire, coins and health must not change": [
-        "keep fire implies coins == previous(coins) and health >= previous(health) and health <= previous(health)"
-    ],
     "both coins and health over 40 within 4 min": ["require eventually within 4 min (coins > 40 and health > 40)"],
     "when phase is menu\nthen coins is 3 or 4": ["keep phase is menu implies coins == 3 or coins == 4"],
     "avoid |coins - health| > 60": ["avoid abs(coins - health) > 60"],
@@ -429,7 +431,57 @@ IN_ALL_OR_EACH = [
     ("keep fire implies health >= value_at(health, begins fire) - 15", "if it counts from where `fire` began"),
     ("keep fire implies health >= previous(health) - 15", "for each step with `fire`"),
 ]
+SAME_WHILE = [
+    (
+        "keep fire and previously fire implies health >= previous(health) and health <= previous(health)",
+        "within each `fire`",
+    ),
+    (
+        "keep fire implies health >= previous(health) and health <= previous(health)",
+        "also from the step before it begins",
+    ),
+]
+INT_SAME_WHILE = [
+    ("keep fire and previously fire implies coins == previous(coins)", "within each `fire`"),
+    ("keep fire implies coins == previous(coins)", "also from the step before it begins"),
+]
+DENIED_AFTER = [
+    ("keep spray implies always for 2 s not fire", "from each step with `spray` on"),
+    ("keep ends spray implies always for 2 s not fire", "from its end on"),
+]
 SEVERAL_READINGS = {
+    "while fire keep health unchanged": SAME_WHILE,
+    "keep health stays the same while fire": SAME_WHILE,
+    "health does not change while fire": SAME_WHILE,
+    "while fire keep coins unchanged": INT_SAME_WHILE,
+    "coins does not change as long as fire": INT_SAME_WHILE,
+    "while fire, coins and lap must not change": [
+        (
+            "keep fire and previously fire implies coins == previous(coins) and lap == previous(lap)",
+            "within each `fire`",
+        ),
+        (
+            "keep fire implies coins == previous(coins) and lap == previous(lap)",
+            "also from the step before it begins",
+        ),
+    ],
+    "phase stays the same while fire": [
+        (
+            "keep fire and previously fire implies not (ends (phase is menu) or ends (phase is shift) or "
+            "ends (phase is results))",
+            "within each `fire`",
+        ),
+        (
+            "keep fire implies not (ends (phase is menu) or ends (phase is shift) or ends (phase is results))",
+            "also from the step before it begins",
+        ),
+    ],
+    "keep not fire for 2 s after spray": DENIED_AFTER,
+    "after spray no fire for 2 s": DENIED_AFTER,
+    "after phase is menu, no fire for 2 s": [
+        ("keep phase is menu implies always for 2 s not fire", "from each step with `phase is menu` on"),
+        ("keep ends (phase is menu) implies always for 2 s not fire", "from its end on"),
+    ],
     "cooldown(fire, 2 s)": AGAIN,
     "fire has a cooldown of 2 s": AGAIN,
     "fire at most once every 2 s": APART,
@@ -695,10 +747,10 @@ UNSAYABLE = {
     "every third fire must be spray": "no clause can say what holds at each third `fire`",
     "at some point health is 30 higher than 2 s ago": "no clause can say what `health` was 2 s ago",
     "health never falls by more than 5 in 30 s": "no clause can say what `health` was 30 s ago",
-    "fire never happens three times within 5 s": "no clause can say how often",
-    "avoid more than 2 times fire within 5 s": "no clause can say how often",
+    "fire never happens three times within 5 s": "no short clause can say how often",
+    "avoid more than 2 times fire within 5 s": "no short clause can say how often",
     "fire => coins@2s > coins": "no clause can say what `coins` is 2 s later or earlier",
-    "fire at most 3 times within any 10 s": "no clause can say how often",
+    "fire at most 3 times within any 10 s": "no short clause can say how often",
 }
 
 

@@ -87,9 +87,40 @@ def test_a_time_beside_an_operator_gets_both_bracketings(clause: str, readings: 
 )
 def test_no_clause_counts_within_a_time(clause: str) -> None:
     assert error_of(clause).help == (
-        "`times(hit)` counts from the first step on, and no clause can say how often something happens within 3 s: "
-        "let the game count, and supply the number"
+        "`times(hit)` counts from the first step on, and no short clause can say how often something happens within "
+        "3 s: let the game count, and supply the number"
     )
+
+
+@pytest.mark.parametrize(
+    ("clause", "readings"),
+    [
+        (
+            "keep speed stays the same while alarm",
+            [
+                "keep alarm and previously alarm implies speed >= previous(speed) and speed <= previous(speed)",
+                "keep alarm implies speed >= previous(speed) and speed <= previous(speed)",
+            ],
+        ),
+        (
+            "keep not hit for 2 s after alarm",
+            ["keep alarm implies always for 2 s not hit", "keep ends alarm implies always for 2 s not hit"],
+        ),
+        (
+            "after alarm no hit for 2 s",
+            ["keep alarm implies always for 2 s not hit", "keep ends alarm implies always for 2 s not hit"],
+        ),
+    ],
+)
+def test_a_rule_of_a_condition_that_lasts_gets_both_readings(clause: str, readings: list[str]) -> None:
+    assert quoted(clause) == readings
+
+
+@pytest.mark.parametrize(
+    "clause", ["require hit at least 2 times before alarm", "require at least 2 times hit before alarm"]
+)
+def test_a_required_count_before_an_event_has_a_clause(clause: str) -> None:
+    assert (error_of(clause).help or "").splitlines()[0] == "write `keep alarm implies times(hit) >= 2`"
 
 
 def test_a_count_of_two_within_a_time_has_a_clause() -> None:

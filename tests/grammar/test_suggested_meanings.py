@@ -267,8 +267,8 @@ def test_a_count_within_a_time_that_the_language_cannot_say_says_so() -> None:
     _, error = error_of("avoid a 3 times within 10 s")
     assert error.fixes == ()
     assert error.help == (
-        "`times(a)` counts from the first step on, and no clause can say how often something happens within 10 s: "
-        "let the game count, and supply the number"
+        "`times(a)` counts from the first step on, and no short clause can say how often something happens within "
+        "10 s: let the game count, and supply the number"
     )
 
 

@@ -103,6 +103,14 @@ class Answers(Conditions):
         state = lasting if state == kept else joined([state, lasting], "and")
         return Asked(Answer("within", state, duration.text))
 
+    def within_lasting(self, state: State, duration: Duration, length: Duration) -> Asked | None:
+        """Return the answer of `a within 1 s for at least 3 s`: it begins in that time, and lasts."""
+        if is_negative(state):
+            return None
+        state = self.settled.get(state.text, state)
+        formula = State(f"eventually within {duration.text} always for {length.text} {state.at(ATOM)}")
+        return Asked(Answer("now", formula), is_formula=True)
+
     def within_unless(self, state: State, duration: Duration, event: Event) -> Asked | None:
         return None if is_negative(state) else self.reach_in_time_unless(state, duration, event)
 

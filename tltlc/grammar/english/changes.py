@@ -4,10 +4,13 @@ from __future__ import annotations
 
 from typing import Final
 
-from tltlc.grammar.english.events import Event, Held
+from tltlc.grammar.english.answers import Asked
+from tltlc.grammar.english.events import Event, Held, as_state
 from tltlc.grammar.english.quantities import MIRRORED, Change, Duration, Number, begun, comparison
-from tltlc.grammar.english.rules import Reading, Rules
+from tltlc.grammar.english.rules import LASTING, Reading, Rules, When
 from tltlc.grammar.english.terminals import Term
+from tltlc.grammar.mistakes.declared_names import DeclaredNames
+from tltlc.grammar.mistakes.sentences.changes import keeps_values
 from tltlc.grammar.mistakes.sentences.states import AND, ATOM, OR, State, joined
 
 _MOST_STEPS_BACK: Final = 10
@@ -18,6 +21,11 @@ _Found = Reading | list[Reading] | None
 
 class Changes(Rules):
     """The meanings of the rules about changes of numbers."""
+
+    def __init__(self, names: DeclaredNames) -> None:
+        super().__init__(names)
+        self._kept_enums: set[str] = set()
+        """The conditions that an enum keeps its value."""
 
     def cannot_change_within(self, term: Term, change: Change, sign: str, step: Number, duration: Duration) -> _Found:
         before = self.value_before(term, duration)
@@ -81,6 +89,35 @@ class Changes(Rules):
         if goal is None or not isinstance(kept, Reading):
             return None
         return Reading((f"reach {goal.text}", *kept.clauses))
+
+    # Numbers that stay the same while something holds.
+
+    def enum_stays(self, name: Term, before: Term | None = None) -> State | None:
+        state = super().enum_stays(name, before)
+        self._kept_enums |= set() if state is None else {state.text}
+        return state
+
+    def first(self, when: When, event: Event, answers: list[Asked]) -> _Found:
+        return self._same_while(when, event, answers) or super().first(when, event, answers)
+
+    def last(self, answers: list[Asked], when: When, event: Event) -> _Found:
+        return self._same_while(when, event, answers) or super().last(answers, when, event)
+
+    def _same_while(self, when: When, event: Event, answers: list[Asked]) -> list[Reading] | None:
+        """Return the readings of `while a, b stays the same`: is the first step of a compared with the one before?"""
+        state, asked = as_state(event), answers[0]
+        same, kind = asked.answer.state, asked.answer.kind
+        is_kept = kind in ("now", "always") and not asked.is_formula and asked.answer.keyword != "reach"
+        is_same = same.text in self._kept_enums or keeps_values(same.text)
+        if when not in LASTING or state is None or answers[1:] or not is_kept or not is_same:
+            return None
+        if state.text.startswith(("begins ", "ends ")) or "previous" in state.text:
+            return None  # a change has no steps within
+        within = joined([state, State(f"previously {state.at(ATOM)}")], "and")
+        return [
+            Reading((f"keep {within.at(OR)} implies {same.at(OR)}",), f"within each `{state.text}`"),
+            Reading((f"keep {state.at(OR)} implies {same.at(OR)}",), "also from the step before it begins"),
+        ]
 
     # Values at other steps.
 

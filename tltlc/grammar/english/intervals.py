@@ -172,8 +172,8 @@ class Intervals(Rules):
         if counted.sign in ("<=", "<") and number == 1 and counted.state.level == ATOM:
             return _not_again(counted.state, duration)
         self.limits.append(
-            f"`times({counted.state.text})` counts from the first step on, and no clause can say how often something "
-            f"happens within {duration.text}: let the game count, and supply the number"
+            f"`times({counted.state.text})` counts from the first step on, and no short clause can say how often "
+            f"something happens within {duration.text}: let the game count, and supply the number"
         )
         return None
 

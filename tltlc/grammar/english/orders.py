@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from itertools import pairwise
 from typing import Final
 
-from tltlc.grammar.english.answers import is_negative
+from tltlc.grammar.english.answers import Asked, is_negative
 from tltlc.grammar.english.events import Counted, Event, Held, as_state
 from tltlc.grammar.english.quantities import Duration
-from tltlc.grammar.english.rules import Goals, Reading, Rules, are_simple, begun_text
+from tltlc.grammar.english.rules import Goals, Reading, Rules, When, are_simple, begun_text
 from tltlc.grammar.english.terminals import Term
 from tltlc.grammar.mistakes.sentences.states import AND, ATOM, OR, State, joined
 
@@ -23,6 +24,14 @@ _Found = Reading | list[Reading] | None
 
 class Orders(Rules):
     """The meanings of the rules about orders."""
+
+    # What must not hold for a time after an event.
+
+    def first(self, when: When, event: Event, answers: list[Asked]) -> _Found:
+        return _denied_after(when, event, answers) or super().first(when, event, answers)
+
+    def last(self, answers: list[Asked], when: When, event: Event) -> _Found:
+        return _denied_after(when, event, answers) or super().last(answers, when, event)
 
     # Goals.
 
@@ -219,6 +228,27 @@ class Orders(Rules):
 
     def never_goes(self, early: State, late: State) -> _Found:
         return self.never_follows(late, early)
+
+
+def _denied_after(when: When, event: Event, answers: list[Asked]) -> list[Reading] | None:
+    """Return the readings of `no b for 2 s after a`, if a may last: from each step with a on, or from its end on."""
+    answer = answers[0].answer
+    is_denied = answer.kind == "lasting" and is_negative(answer.state) and are_simple(answer.state)
+    if when != "after" or answers[1:] or not is_denied or not isinstance(event, State) or not _may_last(event):
+        return None
+    if event.text == answer.state.negated().text:
+        return None  # an event that must not come again
+    ending = event.text if event.text.isidentifier() else f"({event.text})"
+    denied = f"always for {answer.time} {answer.state.at(ATOM)}"
+    return [
+        Reading((f"keep {event.at(OR)} implies {denied}",), f"from each step with `{event.text}` on"),
+        Reading((f"keep ends {ending} implies {denied}",), "from its end on"),
+    ]
+
+
+def _may_last(event: State) -> bool:
+    """Whether an event is a bool, or the value of an enum."""
+    return event.text.isidentifier() or (event.level == ATOM and re.fullmatch(r"\w+ is \w+", event.text) is not None)
 
 
 def _may_begin(state: State) -> bool:

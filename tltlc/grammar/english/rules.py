@@ -33,7 +33,8 @@ class Goals:
     condition: str = ""
 
 
-_LASTING: Final = ("while", "as long as")
+LASTING: Final = ("while", "as long as")
+"""Words before a condition that lasts."""
 _Found = Reading | list[Reading] | None
 
 
@@ -336,9 +337,9 @@ def _answer_readings(when: When, event: Event, state: State, asked: Asked) -> li
         if asked.is_once and not is_edge:
             state = State(f"begins {state.at(ATOM)}")
         return [Reading((f"keep {state.at(OR)} implies {answer.state.at(OR)}",), asked.condition)]
-    if when in _LASTING and answer.keyword == "reach":
+    if when in LASTING and answer.keyword == "reach":
         return []
-    is_each = when in _LASTING or (when == "each" and answer.kind == "now")
+    is_each = when in LASTING or (when == "each" and answer.kind == "now")
     clauses = answered(state, answer, is_from_then=when == "after", is_each=is_each)
     if clauses is not None:
         return [Reading(clauses, asked.condition)]

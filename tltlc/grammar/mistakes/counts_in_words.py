@@ -53,8 +53,8 @@ _CLAUSES: Final = {
 for these, the other clause is meant.
 """
 COUNT_ELSEWHERE: Final = (
-    "counts from the first step on, and no clause can say how often something happens within {time}: let the game "
-    "count, and supply the number"
+    "counts from the first step on, and no short clause can say how often something happens within {time}: let the "
+    "game count, and supply the number"
 )
 _TWICE: Final = ((">=", "2"), (">", "1"))
 _AT_MOST_ONCE: Final = (("<=", "1"), ("<", "2"))
@@ -154,12 +154,22 @@ def _error(
     elif not sign and keyword in ("keep", "require") and is_whole:
         at_least, at_most = (_CLAUSES["keep", sign].format(p=operand, n=count.number) for sign in (">=", "<="))
         help_ = f"write `{at_least}` if it must be that often at least, `{at_most}` if it must be that often at most"
+    elif keyword == "require" and sign in (">=", ">") and (event := _event_behind(failure, end)):
+        clause = f"keep {event} implies times({operand}) {sign} {count.number}"
+        return suggest_rewrite(failure, 0, len(tokens) - 1, clause, title)
     elif sign and not keyword:
         return suggest_rewrite(failure, start, end, f"times({operand}) {sign} {count.number}", title)
     else:
         example = f"`times({operand}) {count.sign or '>='} {count.number}`"
         help_ = f"`times({operand})` is how often it has begun: compare it, as in {example}"
     return failure.error("TLT0101", title, help_, span=span)
+
+
+def _event_behind(failure: ParseFailure, start: int) -> str:
+    """Return the only operand of `before at_exit` at an index, the end of the clause; else ""."""
+    tokens = failure.tokens
+    end = operand_end(tokens, start + 1) if tokens[start].text == "before" else None
+    return "" if end is None or tokens[end].type != END else text_of(failure, start + 1, end)
 
 
 def _role(failure: ParseFailure, start: int) -> tuple[str, str]:

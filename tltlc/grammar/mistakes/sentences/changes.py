@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from typing import Final
 
@@ -34,6 +35,9 @@ _GAINS: Final = ("gain", "earn", "gaining", "earning", "gains", "earns")
 
 VERBS_OF_CHANGE: Final = (*_LOSSES, *_GAINS)
 
+_SAME: Final = re.compile(r"([\w.]+) (?:== previous\(\1\)|>= previous\(\1\) and \1 <= previous\(\1\))")
+_SEVERAL: Final = re.compile(r"\(*same(?: and same)*\)*")
+
 
 def change_of(value: str, kind: str, words: Words) -> tuple[str, str] | None:
     """Return the conditions on a value and its value before, and a sign, for the words behind its name.
@@ -58,3 +62,8 @@ def change_of(value: str, kind: str, words: Words) -> tuple[str, str] | None:
 def loss_of(words: Words) -> str:
     """Return the sign of the change that a verb before the name of a number tells: `<` for `spend gold`."""
     return "<" if words.word(0) in _LOSSES else ">" if words.word(0) in _GAINS else ""
+
+
+def keeps_values(text: str) -> bool:
+    """Whether a condition says of each of its numbers that it is that of the step before, and nothing else."""
+    return _SEVERAL.fullmatch(_SAME.sub("same", text)) is not None

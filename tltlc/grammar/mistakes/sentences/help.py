@@ -18,6 +18,7 @@ from tltlc.grammar.mistakes.declared_names import declared_names
 from tltlc.grammar.mistakes.english_rewrite import REAL_TIME
 from tltlc.grammar.mistakes.parse_failure import ParseFailure
 from tltlc.grammar.mistakes.rephrasing import span_of
+from tltlc.grammar.mistakes.sentences.changes import keeps_values
 from tltlc.grammar.mistakes.sentences.limits import counts_in_periods
 from tltlc.grammar.mistakes.sentences.names import is_imperative, with_names
 from tltlc.grammar.mistakes.sentences.reading import (
@@ -30,7 +31,7 @@ from tltlc.grammar.mistakes.sentences.reading import (
     sentence_words,
 )
 from tltlc.grammar.mistakes.sentences.validity import is_valid
-from tltlc.grammar.mistakes.sentences.vocabulary import UNLESS
+from tltlc.grammar.mistakes.sentences.vocabulary import LASTING, UNLESS
 from tltlc.grammar.mistakes.sentences.words import Words, phrases
 from tltlc.grammar.past_words import SYNONYMS
 
@@ -152,12 +153,15 @@ def _is_foreign(fix: Fix, failure: ParseFailure) -> bool:
 def _may_miss(failure: ParseFailure, fix: Fix, words: Words) -> bool:
     """Whether a fix takes one of two readings.
 
-    It compares a value with that of the step before from some step on, and that step may not be meant. Or it says
-    how long something lasts `unless` something else comes, which may also end that time.
+    It compares a value with that of the step before from some step on, or while something holds, and the first such
+    step may not be meant. Or it says how long something lasts `unless` something else comes, which may also end that
+    time, or `after` something, which may itself last.
     """
     text = mended(failure, fix)
     is_compared = " implies always " in text and "previous(" in text
-    return is_compared or (" implies always for " in text and words.find(UNLESS) is not None)
+    is_same = words.find(LASTING) is not None and keeps_values(text.partition(" implies ")[2])
+    is_denied = " implies always for " in text and " not " in text and words.find(phrases("after")) is not None
+    return is_compared or is_same or is_denied or (" implies always for " in text and words.find(UNLESS) is not None)
 
 
 def _is_same(reading: Reading, failure: ParseFailure, fix: Fix) -> bool:

@@ -16,6 +16,7 @@ from tltlc.grammar.mistakes.sentences.vocabulary import (
     AT_ONCE,
     COPULAS,
     FROM_THEN,
+    LASTING,
     MODALS,
     NEVER,
     ONLY_AFTER,
@@ -32,9 +33,7 @@ Clauses = tuple[str, ...]
 COUNTED: Final = frozenset(("times", "time_since", "time_holding"))
 """The functions whose values depend on all steps before."""
 _BECOMES: Final = phrases("becomes", "turns", "changes to", "turns to", "starts", "begins", "goes to", "switches to")
-_LASTING: Final = phrases("while", "during", "as long as", "so long as", "for as long as")
-"""Words before a condition that may have to hold until a goal is reached."""
-_EACH: Final = (*_LASTING, *phrases("whenever", "every time", "each time", "any time", "anytime"))
+_EACH: Final = (*LASTING, *phrases("whenever", "every time", "each time", "any time", "anytime"))
 """Words before a condition, at each step of which what follows must hold."""
 _EITHER: Final = phrases("while", "during")
 """Words between an event and a condition that may say a goal, or a rule."""
@@ -126,13 +125,13 @@ def _condition_first(words: Words) -> Clauses | None:
             return None  # the rule may end there, or what it asks for
         if event is not None and phrase in SAME_STEP and words[stop:].find(UNLESS):
             return _answered_by(event, words[stop:])
-        if event is None or answer is None or (answer.keyword == "reach" and phrase in _LASTING):
+        if event is None or answer is None or (answer.keyword == "reach" and phrase in LASTING):
             continue
         if answer.keyword == "keep" and answer.kind not in ("now", "lasting", "always"):
             return None  # `after a, keep b within 5 s` may ask for one step, or for all of that time
         if answer.kind == "now" and event.text in (f"begins {answer.state.text}", f"begins ({answer.state.text})"):
             return None  # it holds there already
-        is_each = phrase in (_EACH if answer.kind == "now" else _LASTING)
+        is_each = phrase in (_EACH if answer.kind == "now" else LASTING)
         return answered(event, answer, is_from_then=phrase in FROM_THEN, is_each=is_each)
     return None
 

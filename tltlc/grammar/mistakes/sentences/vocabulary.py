@@ -56,6 +56,8 @@ ONLY_AFTER: Final = (
 )
 UNLESS: Final = phrases("unless", "except when", "except if", "except while", "except during")
 
+LASTING: Final = phrases("while", "during", "as long as", "so long as", "for as long as")
+"""Words before a condition that may have to hold until a goal is reached."""
 UNTIL: Final = phrases("until", "till", "up until", "before")
 AT_ONCE: Final = phrases("at the same time", "at once", "simultaneously", "together", "at the same step")
 
