@@ -249,6 +249,16 @@ SEVERAL_READINGS = {
         ("keep boss_dead implies not (fire and spray)", "if `fire` and `spray` must not hold together"),
         ("keep boss_dead implies not fire and spray", "if `fire` must not hold, and `spray` must"),
     ],
+    "keep ends fire implies always for 0.5 s not fire unless spray or boss_dead": [
+        (
+            "keep ends fire implies ((always for 0.5 s not fire) or (not fire until (spray or boss_dead)))",
+            "if `(spray or boss_dead)` ends that time",
+        ),
+        (
+            "keep ends fire implies ((spray or boss_dead) or (always for 0.5 s not fire))",
+            "if `(spray or boss_dead)` counts at the first step alone",
+        ),
+    ],
     "when fire, spray for 3 s unless boss_dead": [
         ("keep fire implies ((always for 3 s spray) or (spray until boss_dead))", "if `boss_dead` ends that time"),
         ("keep fire implies (boss_dead or (always for 3 s spray))", "if `boss_dead` counts at the first step alone"),

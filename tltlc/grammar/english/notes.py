@@ -72,13 +72,23 @@ def _notes(expression: Expr, source: SourceFile, step_s: float) -> Iterator[tupl
         elif isinstance(part, BinaryExpr) and part.op == "U":
             end = source.slice(part.right.span)
             yield f"write `weak_until` for `until` if play may end before `{end}`", ("weak_until",)
-        elif isinstance(part, BinaryExpr) and part.op == "implies" and _is_next_state(part.right):
-            condition = source.slice(part.left.span)
-            yield f"write `weak_next` for `next` if play may end at a step with `{condition}`", ("weak_next",)
+        elif isinstance(part, BinaryExpr) and part.op in ("implies", "within"):
+            yield from _rule_notes(part, source)
         elif isinstance(part, BinaryExpr) and part.op in (">", ">=") and _is_held(part.left):
             note = _of_time(part, source, step_s)
             if note:
                 yield note, ("time_holding",)
+
+
+def _rule_notes(rule: BinaryExpr, source: SourceFile) -> Iterator[tuple[str, tuple[str, ...]]]:
+    """Yield what to know of a rule with a condition: `a implies b`, or `within 2 s of a, b`."""
+    given, condition = rule.left, source.slice(rule.left.span)
+    if rule.op == "implies" and _is_next_state(rule.right):
+        yield f"write `weak_next` for `next` if play may end at a step with `{condition}`", ("weak_next",)
+    answer = rule.right.inner if isinstance(rule.right, GroupExpr) else rule.right
+    is_awaited = rule.op == "within" or (isinstance(answer, Unary) and answer.op == "F")
+    if is_awaited and isinstance(given, BinaryExpr) and given.op in (">", ">=") and _is_held(given.left):
+        yield f"each step with `{condition}` asks anew; write `begins ({condition})` if once is enough", ("begins",)
 
 
 def _is_next_state(answer: Expr) -> bool:

@@ -151,6 +151,8 @@ class Sequels(Stretches):
     def lasting_unless(self, state: State, duration: Duration, event: Event) -> list[Asked] | None:
         """Return the readings of `a for 3 s unless b`: b ends that time, or b excuses the step of the condition."""
         exception = as_state(event)
+        if exception is not None and exception.level == OR:
+            exception = State(exception.at(ATOM))
         if exception is None or not are_simple(state, exception):
             return None
         a, b = state.at(ATOM), exception.at(ATOM)
