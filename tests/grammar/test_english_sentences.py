@@ -837,8 +837,8 @@ def test_one_fix_mends_all_words_of_a_clause_that_can_be_parsed(typed: str, mean
         ),
         (
             "when fire for 8 s, spray within 2 s",
-            "each step with `time_holding(fire) >= 8 s` asks anew; write `begins (time_holding(fire) >= 8 s)` if once is "
-            "enough\n`time_holding(fire) >= 8 s` needs 81 steps in a row, and its time is 0 s at the first of them; "
+            "each step with `time_holding(fire) >= 8 s` asks anew; write `begins (time_holding(fire) >= 8 s)` if once "
+            "is enough\n`time_holding(fire) >= 8 s` needs 81 steps in a row, and its time is 0 s at the first of them; "
             "`time_holding(fire) >= 7.9 s` needs 80",
         ),
         (
