@@ -76,8 +76,6 @@ MEANINGS: dict[str, Meaning] = {
     "a for 2 s after b": holds_after,
     "require always for 2 s a after b": holds_after,
     "keep always for 2 s a after b": holds_after,
-    "keep not a for 2 s after b": lacks_after,
-    "avoid a for 2 s after b": lacks_after,
     "avoid begins a within 2 s of b": lambda t: (
         not any(j in range(i, i + 3) for i, event in enumerate(b(t)) if event for j in starts(t))
     ),
@@ -88,6 +86,13 @@ MEANINGS: dict[str, Meaning] = {
 def test_a_suggestion_has_the_meaning_of_the_sentence(clause: str, meaning: Meaning) -> None:
     (suggestion,) = suggestions(clause)
     check(suggestion, meaning)
+
+
+@pytest.mark.parametrize("clause", ["keep not a for 2 s after b", "avoid a for 2 s after b"])
+def test_what_is_denied_after_a_state_counts_from_each_of_its_steps_or_from_its_end(clause: str) -> None:
+    first, last = re.findall("`(keep [^`]*)`", error_of(clause)[1].help or "")
+    check(first, lacks_after)
+    assert last == "keep ends b implies always for 2 s not a"
 
 
 @pytest.mark.parametrize(
