@@ -29,9 +29,7 @@ ONE_READING = {
     "when fire, eventually spray before boss_dead": ["keep begins fire implies (not boss_dead until spray)"],
     "when fire, no spray before boss_dead": ["keep fire implies (not spray weak_until boss_dead)"],
     "when fire, not spray before boss_dead": ["keep fire implies (not spray weak_until boss_dead)"],
-    "no fire and no spray when boss_dead": ["keep boss_dead implies not fire and not spray"],
     "when boss_dead, no fire and no spray": ["keep boss_dead implies not fire and not spray"],
-    "no fire or spray when boss_dead": ["keep boss_dead implies not fire and not spray"],
     "from fire on, no spray": ["keep fire implies always not spray"],
     "keep when time_holding(fire) == 3 s, spray": ["keep begins (time_holding(fire) >= 3 s) implies spray"],
     "keep fire before spray implies boss_dead": ["keep spray and previously once fire implies boss_dead"],
@@ -248,6 +246,12 @@ SEVERAL_READINGS = {
     "when boss_dead, no fire and spray": [
         ("keep boss_dead implies not (fire and spray)", "if `fire` and `spray` must not hold together"),
         ("keep boss_dead implies not fire and spray", "if `fire` must not hold, and `spray` must"),
+    ],
+    "no fire and no spray when boss_dead": [
+        ("keep boss_dead implies not fire and not spray", "if `boss_dead` is a condition of both")
+    ],
+    "no fire or spray when boss_dead": [
+        ("keep boss_dead implies not fire and not spray", "if `boss_dead` is a condition of both")
     ],
     "keep ends fire implies always for 0.5 s not fire unless spray or boss_dead": [
         (

@@ -134,7 +134,8 @@ class Stretches(Intervals, Orders):
         return _kept(when, event, state)
 
     def neither_when(self, state: State, when: When, event: Event) -> _Found:
-        return _kept(when, event, state)
+        condition = as_state(event)
+        return _kept(when, event, state, "" if condition is None else f"if `{condition.text}` is a condition of both")
 
     def not_both(self, one: State, other: State) -> list[tuple[State, str]]:
         """Return both readings of `no a and b`, with what tells them apart."""
