@@ -10,6 +10,22 @@ from tltlc import compile_text
 from tltlc.grammar.mistakes.sentences.validity import is_valid
 from tltlc.monitor import Monitor
 
+IN_ORDER_WITHIN_5_S = [
+    (
+        "require eventually within 5 s (boss_dead and previously once (spray and previously once fire))",
+        "if the time is for all of them, from the first step of play on",
+    ),
+    (
+        "reach fire then spray then (boss_dead and once within 5 s begins fire)",
+        "if it is for all of them, from where `fire` begins, the last time if it begins again",
+    ),
+    ("reach fire then begins spray then within 5 s boss_dead", "if it counts from where `spray` begins"),
+    (
+        "reach fire then spray then within 5 s boss_dead",
+        "if it counts from any step with `spray`, such as the last",
+    ),
+]
+"""From when a time at the end of a sequence may count."""
 ONE_READING = {
     "keep after begins fire, spray or not fire within 30 s": [
         "keep begins fire implies eventually within 30 s (spray or not fire)"
@@ -106,51 +122,9 @@ SEVERAL_READINGS = {
             "if each `boss_dead` needs its own `spray`",
         ),
     ],
-    "reach fire then spray then boss_dead within 5 s": [
-        (
-            "require eventually within 5 s (boss_dead and previously once (spray and previously once fire))",
-            "if the time is for all of them, from the first step of play on",
-        ),
-        (
-            "reach fire then spray then (boss_dead and once within 5 s begins fire)",
-            "if it is for all of them, from where `fire` begins, the last time if it begins again",
-        ),
-        ("reach fire then begins spray then within 5 s boss_dead", "if it counts from where `spray` begins"),
-        (
-            "reach fire then spray then within 5 s boss_dead",
-            "if it counts from any step with `spray`, such as the last",
-        ),
-    ],
-    "fire, then spray, then boss_dead, within 5 s": [
-        (
-            "require eventually within 5 s (boss_dead and previously once (spray and previously once fire))",
-            "if the time is for all of them, from the first step of play on",
-        ),
-        (
-            "reach fire then spray then (boss_dead and once within 5 s begins fire)",
-            "if it is for all of them, from where `fire` begins, the last time if it begins again",
-        ),
-        ("reach fire then begins spray then within 5 s boss_dead", "if it counts from where `spray` begins"),
-        (
-            "reach fire then spray then within 5 s boss_dead",
-            "if it counts from any step with `spray`, such as the last",
-        ),
-    ],
-    "reach fire, spray, boss_dead in this order within 5 s": [
-        (
-            "require eventually within 5 s (boss_dead and previously once (spray and previously once fire))",
-            "if the time is for all of them, from the first step of play on",
-        ),
-        (
-            "reach fire then spray then (boss_dead and once within 5 s begins fire)",
-            "if it is for all of them, from where `fire` begins, the last time if it begins again",
-        ),
-        ("reach fire then begins spray then within 5 s boss_dead", "if it counts from where `spray` begins"),
-        (
-            "reach fire then spray then within 5 s boss_dead",
-            "if it counts from any step with `spray`, such as the last",
-        ),
-    ],
+    "reach fire then spray then boss_dead within 5 s": IN_ORDER_WITHIN_5_S,
+    "fire, then spray, then boss_dead, within 5 s": IN_ORDER_WITHIN_5_S,
+    "reach fire, spray, boss_dead in this order within 5 s": IN_ORDER_WITHIN_5_S,
     "after fire keep health == previous(health)": [
         (
             "keep previously once fire implies health >= previous(health) and health <= previous(health)",

@@ -70,8 +70,8 @@ class Differences(Intervals):
         return self.difference_of(term, "falls", *(part for part in sign if isinstance(part, str)), step)
 
     def gained(self, *parts: str | Number | Term) -> Difference | None:
-        found = self.lost(*parts)
-        return None if found is None else replace(found, change="rises")
+        loss = self.lost(*parts)
+        return None if loss is None else replace(loss, change="rises")
 
     def change_in(self, difference: Difference, period: Period) -> _Found:
         """Return the rule of `hp falls by at most 20 in each fight`, or of `gain at least 100 score per wave`."""

@@ -144,16 +144,16 @@ class Periods(Totals):
     def last(self, answers: list[Asked], when: When, event: Event) -> _Found:
         """Return the readings of `times(hit) <= 3 while airborne`; changes are rules, and no goals."""
         text = answers[0].answer.state.text
-        found = super().last(answers, when, event)
-        if not isinstance(found, list) or when != "while":
-            return found
+        readings = super().last(answers, when, event)
+        if not isinstance(readings, list) or when != "while":
+            return readings
         if text.startswith("times(") and (compared := _COMPARED.fullmatch(text)) and not answers[1:]:
             counted = self.times_compared(
                 Term("INT", compared[1]), Term("SIGN", compared[2]), Term("NUMBER", compared[3])
             )
             return None if counted is None else self.count_while(counted, when, event)
         is_change = "previous(" in text or "value_at(" in text
-        return [reading for reading in found if not (is_change and reading.clauses[0].startswith("reach "))]
+        return [reading for reading in readings if not (is_change and reading.clauses[0].startswith("reach "))]
 
     def times_while(self, times: Term, state: State, sign: Term, number: Term) -> _Found:
         counted = self.times_compared(times, sign, number)

@@ -107,8 +107,8 @@ class Totals(Differences):
         if totals is None:
             return None
         inside = "" if period.state is None else f"{period.state.at(OR)} implies "
-        each = f"keep {inside}time_holding({state.text}) {sign} {duration.text}"
-        return [*totals, Reading((each,), f"for each stretch with `{state.text}`")]
+        stretch = f"keep {inside}time_holding({state.text}) {sign} {duration.text}"
+        return [*totals, Reading((stretch,), f"for each stretch with `{state.text}`")]
 
     def time_first_in_each(self, sign: str, duration: Duration, state: State, period: Period) -> _Found:
         return self.time_in_each(state, sign, duration, period)

@@ -14,7 +14,7 @@ from tltlc.resolve.spec import Register
 from tltlc.resolve.units import PLAIN, TYPES, Dimension, power, product, si_unit
 
 _MOST_DIGITS: Final = 17
-"""With so many digits, every number differs from every other."""
+"""The most significant digits of a number that is shown: with these, two different numbers never look alike."""
 
 
 @record
@@ -40,7 +40,7 @@ class Measure:
     def number(self) -> str | None:
         """The value of the side that varies, with its unit; None if both sides vary.
 
-        It has so many digits that it is on the same side of the other number as the value is.
+        If three digits would round the value to the other number or past it, it has more.
         """
         if self.value is None:
             return None
