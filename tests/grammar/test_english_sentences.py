@@ -110,6 +110,7 @@ ONE_READING = {
     "fire for a total of 20 s": ["reach total_time(fire) >= 20 s"],
     "when fire for 20 s in total, spray": ["keep total_time(fire) >= 20 s implies spray"],
     # Values at events.
+    "the highest coins since fire stays under 30": ["keep highest_since(coins, begins fire) < 30"],
     "when fire then coins == coins at last spray": ["keep fire implies coins == value_at(coins, spray)"],
     "when fire ends then coins >= (coins when fire started) + 5": [
         "keep ends fire implies coins >= (value_at(coins, begins fire)) + 5"

@@ -77,10 +77,16 @@ def _event(expr: BinaryExpr, env: Env) -> str:
 
 
 def _is_count(expr: Expr, env: Env) -> bool:
-    """Whether an expression is a use of ``times``, ``total_time``, ``highest`` or ``lowest``, perhaps in brackets."""
+    """Whether an expression is a number by ``times``, ``total_time``, ``highest`` or ``lowest``, perhaps in brackets.
+
+    ``highest(p)`` of a bool is no number: it is a formula.
+    """
     while isinstance(expr, GroupExpr):
         expr = expr.inner
-    return isinstance(expr, CallExpr) and expr.name in SINCE and expr.name not in env.scope.names
+    if not isinstance(expr, CallExpr) or expr.name not in SINCE or expr.name in env.scope.names:
+        return False
+    of_bool = expr.name in ("highest", "lowest") and kind_of(expr.arguments[0].value, env) == "formula"
+    return not of_bool
 
 
 def _comparison(expr: Expr) -> BinaryExpr | None:

@@ -163,7 +163,7 @@ PHRASES: Final[Mapping[str, str]] = {
     "falls_below": "falls below|drops below|goes below|drops under|falls under",
     "rises_above": "rises above|goes above|goes over",
     "is_never": "is never|never",
-    "when_it": "at start of|at beginning of|at|when|on|from|as of|since|at time of|at moment of|at step of|"
+    "when_it": "at start of|at beginning of|at|when|on|from|as of|at time of|at moment of|at step of|"
     "as when|than when|than at|than at start of|as at|as at start of",
     "at_least_every": "at least every|at least once every|at least once each|at least once in every|"
     "at least once in any|at least once per|at least once within any|at least one time every|no less often than every|"

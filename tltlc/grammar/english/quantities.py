@@ -9,6 +9,7 @@ from tltlc.grammar.english.terminals import Term
 from tltlc.grammar.mistakes.declared_names import DeclaredNames
 from tltlc.grammar.mistakes.sentences.states import AND, ATOM, OR, State, joined
 from tltlc.grammar.mistakes.sentences.vocabulary import NEGATED_SIGN
+from tltlc.grammar.past_words import SINCE
 
 MIRRORED: Final = {"<": ">", "<=": ">=", ">": "<", ">=": "<=", "==": "==", "!=": "!="}
 Change = Literal["falls", "rises", "stays", "varies"]
@@ -157,14 +158,22 @@ class Quantities:
         return self.value_at_last(term, State(f"begins {IT}"))
 
     def count_of_since(self, term: Term, event: State) -> Number | None:
-        return self.times_since(Term("INT", f"times({term.text})"), event)
+        return self.number_since(Term("INT", f"times({term.text})"), event)
 
-    def times_since(self, times: Term, event: State) -> Number | None:
-        counted = counted_by(times)
-        if counted is None:
+    def number_since(self, term: Term, event: State) -> Number | None:
+        """Return what `times(p) since q` and `highest(x) since q` mean; None for other numbers before `since`."""
+        name, bracket, inner = term.text.partition("(")
+        if name not in ("times", "highest", "lowest") or not bracket:
             return None
-        text = f"times_since({counted.text}, {event.text})"
-        return Number(text, Term("INT", text))
+        since = event if name == "times" else begun(event)
+        text = f"{SINCE[name]}({inner[:-1].strip()}, {since.text})"
+        return Number(text, Term(term.kind, text, term.declared))
+
+    def highest_since(self, term: Term, event: State) -> Number | None:
+        return self.number_since(Term(term.kind, f"highest({term.text})", term.declared), event)
+
+    def lowest_since(self, term: Term, event: State) -> Number | None:
+        return self.number_since(Term(term.kind, f"lowest({term.text})", term.declared), event)
 
     def absolute(self, number: Number) -> Number | None:
         if number.term is None:
