@@ -14,7 +14,7 @@ from tltlc.grammar.english.terminals import terms
 class Whole(SentenceParser):
     """The parser with all predictions."""
 
-    def _usable(self, kinds: set[str]) -> dict[Any, list[Any]]:
+    def _usable(self, kinds: frozenset[str]) -> dict[Any, list[Any]]:
         return dict(self._predictions)
 
 

@@ -47,6 +47,7 @@ class SentenceParser:
         """Maps the English words of the grammar to their terminals."""
         self._frontend: Any = lark.parser
         self._predictions: Mapping[Any, list[Any]] = lark.parser.parser.predictions
+        self._rules = _Rules(self._predictions)
 
     def parse(self, terminals: Sequence[Term], start: str = "start") -> Tree[Any] | None:
         """Return all parses of terminals as one tree; None if they are no sentence, or no ``part`` of one."""
@@ -55,7 +56,7 @@ class SentenceParser:
 
         frontend = copy(self._frontend)
         frontend.parser = copy(frontend.parser)
-        frontend.parser.predictions = self._usable({term.kind for term in terminals})
+        frontend.parser.predictions = self._usable(frozenset(term.kind for term in terminals))
         try:
             tree = frontend.parse([Token(term.kind, term) for term in terminals], start)
         except UnexpectedInput:
@@ -63,17 +64,57 @@ class SentenceParser:
         assert isinstance(tree, Tree)
         return tree
 
-    def _usable(self, kinds: set[str]) -> dict[Any, list[Any]]:
+    def _usable(self, kinds: frozenset[str]) -> dict[Any, list[Any]]:
         """Return the predictions of the rules that these kinds of terminals can end."""
-        every = {rule for rules in self._predictions.values() for rule in rules}
-        left = [rule for rule in every if all(symbol.name in kinds for symbol in rule.expansion if symbol.is_term)]
-        usable: set[Any] = set()
+        return self._rules.usable(kinds)
+
+
+class _Rules:
+    """The rules of a grammar by their numbers, because sets of lark's rules are slow."""
+
+    def __init__(self, predictions: Mapping[Any, Sequence[Any]]) -> None:
+        rules = list({rule: None for predicted in predictions.values() for rule in predicted})
+        numbers = {rule: number for number, rule in enumerate(rules)}
+        self._predictions = {
+            symbol: [(numbers[rule], rule) for rule in predicted] for symbol, predicted in predictions.items()
+        }
+        self._needs = [
+            (
+                frozenset(part.name for part in rule.expansion if part.is_term),
+                frozenset(part for part in rule.expansion if not part.is_term),
+            )
+            for rule in rules
+        ]
+        """The terminals and the nonterminals of each expansion."""
+        self._origins = [rule.origin for rule in rules]
+        self._with: dict[Any, list[int]] = {}
+        """Maps each nonterminal to the rules whose expansions have it."""
+        for number, (_, parts) in enumerate(self._needs):
+            for part in parts:
+                self._with.setdefault(part, []).append(number)
+
+    def usable(self, kinds: frozenset[str]) -> dict[Any, list[Any]]:
+        """Return the predictions of the rules that these kinds of terminals can end."""
+        missing = [len(parts) if terminals <= kinds else -1 for terminals, parts in self._needs]
+        """How many nonterminals of a rule are not known to end; -1 if a terminal is missing."""
+        waiting = [number for number, count in enumerate(missing) if count == 0]
         ended: set[Any] = set()
-        while found := {rule for rule in left if all(part.is_term or part in ended for part in rule.expansion)}:
-            usable |= found
-            ended |= {rule.origin for rule in found}
-            left = [rule for rule in left if rule not in found]
-        return {symbol: [rule for rule in rules if rule in usable] for symbol, rules in self._predictions.items()}
+        usable: set[int] = set()
+        while waiting:
+            number = waiting.pop()
+            usable.add(number)
+            origin = self._origins[number]
+            if origin in ended:
+                continue
+            ended.add(origin)
+            for other in self._with.get(origin, ()):
+                missing[other] -= 1
+                if missing[other] == 0:
+                    waiting.append(other)
+        return {
+            symbol: [rule for number, rule in predicted if number in usable]
+            for symbol, predicted in self._predictions.items()
+        }
 
 
 @lru_cache(maxsize=1)
