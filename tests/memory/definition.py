@@ -278,8 +278,10 @@ class Definition(Names):
             return max(values) if name == "highest_since" else min(values)
         truth = [self.holds(of, j, scope, len(self.trace)) for j in so_far]
         begins = [truth[0], *(now and not before for before, now in pairwise(truth))]
-        if name in COUNTS:
-            found: float = sum(begins[last:])
+        if name == "times_within":
+            found: float = sum(begins[j] for j in so_far if self._is_inside(parts[1], j, i))
+        elif name in COUNTS:
+            found = sum(begins[last:])
         elif name in ("total_time", "total_time_since"):
             found = self._seconds(sum(truth[max(last, 1) :]))
         elif name == "time_since":
@@ -287,6 +289,11 @@ class Definition(Names):
         else:
             found = self._seconds(max((k for k in so_far if all(truth[i - k :])), default=0))
         return min(found, self._written_maximum(name, parts, scope))
+
+    def _is_inside(self, length: Expr, j: int, i: int) -> bool:
+        """Whether position j is at most a time before position i."""
+        assert isinstance(length, NumberExpr)
+        return i - j <= self._steps(length)
 
     def _condition(self, expr: Expr, i: int, scope: Scope) -> bool:
         """Whether the condition of a ``when`` holds."""
@@ -350,7 +357,7 @@ class Definition(Names):
         return expr.name
 
     def _written_maximum(self, name: str, parts: list[Expr], scope: Scope) -> float:
-        if len(parts) == 1 + (name in WITH_EVENT):
+        if len(parts) == 1 + (name in (*WITH_EVENT, "times_within")):
             return inf
         limit = parts[-1]
         while isinstance(limit, GroupExpr):

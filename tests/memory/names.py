@@ -9,7 +9,7 @@ from tltlc.grammar import tree
 from tltlc.grammar.module import Module
 from tltlc.grammar.tree import CallExpr, Expr, GroupExpr, NameExpr, Quantified
 
-COUNTS: Final = ("times", "times_since")
+COUNTS: Final = ("times", "times_since", "times_within")
 TIMES: Final = ("time_since", "time_holding", "total_time", "total_time_since")
 WITH_EVENT: Final = ("times_since", "total_time_since", "highest_since", "lowest_since", "value_at")
 MEMORY: Final = (

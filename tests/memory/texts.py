@@ -88,6 +88,9 @@ class Texts:
             return f"times({inner}{maximum}) {op} {random.choice(('1', '2', '3', '1.5', 'k', 'hp', '0'))}"
         if kind == 6:
             maximum = f", {random.randint(1, 5)}" if random.random() < 0.3 else ""
+            if random.random() < 0.5:
+                window = random.choice((f"{random.randint(0, 5)} steps", self._time()))
+                return f"times_within({inner}, {window}{maximum}) {op} {random.choice(('1', '2', '3', 'k'))}"
             return f"times_since({inner}, {self.past(depth - 1)}{maximum}) {op} {random.choice(('1', '2', '3', 'k'))}"
         if kind < 3:
             function = random.choice(("time_since", "total_time")) if kind == 1 else "time_holding"

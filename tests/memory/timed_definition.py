@@ -100,6 +100,10 @@ class TimedDefinition(Definition):
             time_s = self._time_s(min((j for j in range(i + 1) if all(truth[j:])), default=i), i)
         return min(time_s, self._written_maximum(name, parts, scope))
 
+    def _is_inside(self, length: Expr, j: int, i: int) -> bool:
+        assert isinstance(length, tree.NumberExpr)
+        return self._time_s(j, i) <= float(exact(length))
+
     def _maximum(self, value: Fraction, name: str) -> float:
         return super()._maximum(value, name) if name in COUNTS else float(value)
 

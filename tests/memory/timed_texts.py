@@ -45,6 +45,7 @@ FORMS: Final = {
     "a window of a rule": "keep historically for {s} {p} implies {q}",
     "a time": "keep time_since({p}) <= {s} implies time_holding({q}) < {t}",
     "a count since an event": "keep times_since({p}, {q}) <= 2",
+    "a count in a window": "keep times_within({p}, {s}) <= 2",
     "a time in all since an event": "avoid total_time_since({p}, {q}) > {s}",
     "a time in all": "avoid total_time({p}) > {s}",
     "a time that is reached": "reach time_holding({p}) >= {s} and time_since({q}, 20 s) > {t}",

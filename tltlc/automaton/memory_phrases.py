@@ -29,13 +29,14 @@ from tltlc.automaton.remembered_formulas import (
     with_rules,
 )
 from tltlc.automaton.timer_phrases import ALWAYS, FROM_START, TIMERS
-from tltlc.automaton.value_phrases import VALUES, Phrase, count_text, time_text, value_phrase, was_phrase
+from tltlc.automaton.value_phrases import VALUES, Phrase, count_text, time_text, value_phrase, was_phrase, window_text
 from tltlc.core.names import ComparisonName, SpokenName
 from tltlc.expression.tree import Before, SignalValue
 from tltlc.logic.formula import TRUE, Formula, always, and_, atom, eventually, implies, not_, or_, rebuild
 from tltlc.logic.implication import complement
 from tltlc.logic.normal_form import negation_normal_form
 from tltlc.logic.text.phrases import bracketed_phrase, is_state, phrase
+from tltlc.resolve.registers import COUNTS
 from tltlc.resolve.spec import Atom, Register
 
 _UNTIL: Final = ("passed", "lasted", "over", "recent", "lately")
@@ -243,11 +244,12 @@ class Speaker:
                 return None
             words, number = self.object_text(operand), item.base.right
             since = counted_since(register)
-            begin = "" if since is None else f" since {self.noun_text(since)}"
+            begin = "" if since is None else f"since {self.noun_text(since)}"
+            when = window_text(register) if register.kind == "times_within" else begin
             holds, fails = (
-                f"{count_text(words, operator, number)}{begin}"
-                if register.kind in ("times", "times_since")
-                else f"{time_text(words, register, operator, number)}{begin}"
+                count_text(words, operator, number, when)
+                if register.kind in COUNTS
+                else " ".join(filter(None, (time_text(words, register, operator, number), begin)))
                 for operator in (item.base.operator, item.base.opposite_operator)
             )
             verb = "be" if register.kind == "time_since" else ""

@@ -15,7 +15,7 @@ from tltlc.automaton.remembered_formulas import (
     remembered,
     waited_for,
 )
-from tltlc.automaton.value_phrases import VALUES, value_words
+from tltlc.automaton.value_phrases import VALUES, value_words, window_text
 from tltlc.expression.tree import Before
 from tltlc.logic.formula import TRUE, Formula
 from tltlc.resolve.spec import Register, RegisterKind
@@ -27,6 +27,7 @@ _TEXTS: Final[Mapping[RegisterKind, str]] = {
     "previously": "whether {0} held at the step before",
     "times": "how often {0} has begun",
     "times_since": "how often {0} has begun since {1}",
+    "times_within": "how often {0} has begun {1}",
     "time_since": "the time since {0}",
     "time_holding": "how long {0} has held",
     "total_time": "how long {0} has held in all",
@@ -73,6 +74,8 @@ def _phrase(register: Register, registers: Mapping[str, Register], speaker: Spea
         words = [name(formula) for formula in formulas]
         if (event := counted_since(register)) is not None:
             words.append(speaker.noun_text(event))
+        if register.kind == "times_within":
+            words.append(window_text(register))
     return None if text is None else text.format(*words)
 
 

@@ -51,10 +51,14 @@ def counted(register: Register, registers: Mapping[str, Register]) -> Formula | 
     condition = update.cases[0][0]
     if register.kind in ("times_since", "total_time_since"):
         condition = update.cases[-1][0]
+    if register.kind == "times_within":
+        # The last case asks for the age of the last beginning.
+        ages = [node.name for node in nodes(update.cases[-1][0]) if isinstance(node, SignalValue)]
+        return counted(registers[ages[0]], registers)
     if register.kind in ("age", "run"):
         kept = condition.args[0]
         return remembered(kept.name, registers) if isinstance(kept, Before) else None
-    if register.kind in ("times", "times_since", "time_holding"):
+    if register.kind in ("times", "times_since", "begun", "time_holding"):
         # The second part is about the sample before.
         first = condition.args[0]
         return from_truth(first) if isinstance(first, Condition) else None

@@ -81,12 +81,24 @@ def value_words(register: Register, event: str) -> str:
     return VALUES[register.kind].format(value, event)
 
 
-def count_text(words: str, operator: str, number: str) -> str:
-    """Return a comparison of ``times(p)`` with a number in words; ``words`` are p."""
+def count_text(words: str, operator: str, number: str, when: str = "") -> str:
+    """Return a comparison of ``times(p)`` with a number in words.
+
+    ``words`` are p, and ``when`` says from which step on it counts, e.g. "since alarm"; it is empty for all steps.
+    """
+    return " ".join(filter(None, (_count_text(words, operator, number, "" if when else " so far"), when)))
+
+
+def window_text(register: Register) -> str:
+    """Return when a register of ``times_within(p, T)`` counts: "in the last 5 s"."""
+    return f"in the last {split_name(register.name)[1][-1]}"
+
+
+def _count_text(words: str, operator: str, number: str, so_far: str) -> str:
     if (operator, number) in ((">", "0"), (">=", "1")):
         return f"{words} at least once"
     if (operator, number) in (("<=", "0"), ("<", "1"), ("==", "0")):
-        return f"{words} 0 times so far"
+        return f"{words} 0 times{so_far}"
     return f"{words} {_COMPARED[operator]} {_TIMES.get(number, f'{number} times')}"
 
 

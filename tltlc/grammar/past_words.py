@@ -33,6 +33,10 @@ FUNCTIONS: Final = {
         ("times_since(p, q)", "times_since(p, q, MAXIMUM)"),
         "How often p has begun to hold since the last sample with q, which counts, too, or since the first sample.",
     ),
+    "times_within": PastWord(
+        ("times_within(p, 5 s)", "times_within(p, 5 s, MAXIMUM)"),
+        "How often p has begun to hold in the last 5 s, with this sample: a count, which stops at its maximum.",
+    ),
     "time_since": PastWord(
         ("time_since(p)", "time_since(p, MAXIMUM)"),
         "The time since p last held, in s: 0 where it holds, the maximum if it never has.",

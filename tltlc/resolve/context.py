@@ -160,15 +160,20 @@ class Context:
             raise _same_name_error(signal.name, source, span)
         return self.signals.setdefault(signal.name, signal)
 
-    def register(self, draft: RegisterDraft, source: SourceFile, span: Span) -> None:
+    def register(
+        self, draft: RegisterDraft, source: SourceFile, span: Span, replaces: RegisterDraft | None = None
+    ) -> None:
         """Record a register that an atom or another register reads.
 
+        ``replaces`` is the register of this name that this one replaces, since it remembers more.
         Raises ResolutionError if a signal, or a register with another meaning, has its name (TLT0216), or
         if the arithmetic of all atoms and registers together is too large (TLT0315).
         """
         known = self.signals.get(draft.name)
         if known is not None and known.arguments:
             raise _same_name_error(draft.name, source, span)
+        if replaces is not None and self.registers.get(draft.name) == replaces:
+            del self.registers[draft.name]
         if draft.name not in self.registers:
             self._arithmetic += self.count_arithmetic(draft.update, source, span, self._arithmetic)
         if self.registers.setdefault(draft.name, draft) != draft:

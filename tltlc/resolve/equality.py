@@ -23,6 +23,7 @@ from tltlc.resolve.margins import robustness
 from tltlc.resolve.problem import ResolutionError, problem
 from tltlc.resolve.quantities import quantity
 from tltlc.resolve.recall import check_closed, saturate, too_small_error
+from tltlc.resolve.registers import COUNTS
 from tltlc.resolve.values import PRODUCT, Env, Quantity, apply, constant, number_text, range_text
 
 EQUALITIES = ("==", "!=")
@@ -106,7 +107,7 @@ def _signal_or_count(side: Quantity, env: Env) -> str | None:
         return value.name
     is_limited = isinstance(value, Op) and value.op == "min" and isinstance(value.args[0], SignalValue)
     register = env.context.registers.get(value.args[0].name) if is_limited else None  # type: ignore[union-attr]
-    return register.name if register is not None and register.kind in ("times", "times_since") else None
+    return register.name if register is not None and register.kind in COUNTS else None
 
 
 def _time_error(time: Quantity, other: Expr, expr: BinaryExpr, env: Env) -> ResolutionError:

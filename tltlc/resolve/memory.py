@@ -15,13 +15,14 @@ from tltlc.core.source import Span
 from tltlc.diagnostics.diagnostic import Label
 from tltlc.expression.tree import Before, Condition, Expression, Op, SignalValue, When, depth
 from tltlc.grammar.past_words import FUNCTIONS
-from tltlc.grammar.tree import BinaryExpr, CallExpr, Expr, Unary
+from tltlc.grammar.tree import BinaryExpr, CallExpr, Expr, GroupExpr, NumberExpr, Unary
 from tltlc.io.limits import ARITHMETIC
 from tltlc.logic import formula as logic
 from tltlc.logic.formula import Formula
 from tltlc.logic.text.printer import ascii_text, operand_text
 from tltlc.resolve import registers, units
 from tltlc.resolve.constants import number, samples, seconds
+from tltlc.resolve.counts_within import Window
 from tltlc.resolve.elapsed import timers_of
 from tltlc.resolve.problem import ResolutionError, problem
 from tltlc.resolve.recall import check_closed, up_to
@@ -35,8 +36,15 @@ from tltlc.resolve.values import CLOSED, Env, Quantity, Recall, number_text
 PAST: Final = ("once", "historically", "previously", "begins", "ends")
 """The operators with one operand that speak of the trace so far."""
 
-_OF_FORMULAS: Final = ("times", "times_since", "time_since", "time_holding", "total_time", "total_time_since")
-_COUNTS: Final = ("times", "times_since")
+_OF_FORMULAS: Final = (
+    "times",
+    "times_since",
+    "times_within",
+    "time_since",
+    "time_holding",
+    "total_time",
+    "total_time_since",
+)
 _WITH_EVENT: Final = ("times_since", "total_time_since", "highest_since", "lowest_since", "value_at")
 """The functions whose second argument is a formula: the event since which, or the state at which, they ask."""
 _MOST_NESTED: Final = 16
@@ -203,12 +211,14 @@ def recall(expr: CallExpr, env: Env, level: int) -> Quantity:
     around the call.
     """
     is_of_formula = expr.name in _OF_FORMULAS
-    least = 2 if expr.name in _WITH_EVENT else 1
+    least = 2 if expr.name in (*_WITH_EVENT, "times_within") else 1
     most = least + is_of_formula
     if not least <= len(expr.arguments) <= most or any(argument.name for argument in expr.arguments):
         form = " or ".join(f"`{form}`" for form in FUNCTIONS[expr.name].forms)
         first = "formula" if is_of_formula else "number"
-        if expr.name not in _WITH_EVENT:
+        if expr.name == "times_within":
+            title = "`times_within` takes a formula and a time"
+        elif expr.name not in _WITH_EVENT:
             title = f"`{expr.name}` takes one {first}"
         else:
             title = f"`{expr.name}` takes {'two formulas' if is_of_formula else 'a number and a formula'}"
@@ -230,20 +240,23 @@ def _of_formula(expr: CallExpr, env: Env) -> Quantity:
     operand = _operand(expr.arguments[0].value, env)
     event = _operand(expr.arguments[1].value, env) if expr.name in _WITH_EVENT else None
     texts = [ascii_text(operand)] if event is None else [ascii_text(operand), _event_text(expr, event, env)]
+    window = _counted_window(expr, operand, env) if expr.name == "times_within" else None
+    if window is not None:
+        texts.append(window[0])
     name = f"{expr.name}({', '.join(texts)})"
-    is_time, varies = expr.name not in _COUNTS, env.context.clock_varies
+    is_time, varies = expr.name not in registers.COUNTS, env.context.clock_varies
     unit = _seconds_per_step(expr, env) if is_time else Fraction(1)
     if not env.symbolic:
         if expr.name == "time_since":
             _time_since(operand, expr, env)
-        else:
+        elif window is None:
             _register(_draft(name, operand, event, expr, env), expr, env)
     dimension = units.TYPES["time"] if is_time else units.PLAIN
-    read = Recall(name, unit, is_count=not is_time, is_whole=not (is_time and varies))
+    read = Recall(name, unit, is_count=not is_time, is_whole=not (is_time and varies), window=window and window[1])
     open_value = Quantity(SignalValue(name), dimension, 0.0, inf, name, is_whole=not is_time, recall=read)
     if env.symbolic:
         env.context.signals.setdefault(name, Signal(name, "number", 0.0, None))
-    if len(expr.arguments) == (1 if event is None else 2):
+    if len(expr.arguments) == len(texts):
         return open_value
     limit = expr.arguments[-1].value
     maximum = number(limit, dimension, env, f"the maximum of `{expr.name}`")
@@ -271,6 +284,25 @@ def _draft(name: str, operand: Formula, event: Formula | None, expr: CallExpr, e
     if event is None:
         return registers.times(name, truth, kept)
     return registers.times_since(name, truth, kept, _truth(event, expr, env))
+
+
+def _counted_window(expr: CallExpr, operand: Formula, env: Env) -> tuple[str, Window]:
+    """Return the time of ``times_within(p, T)`` as a text, and its window.
+
+    Raises ResolutionError: TLT0210 if T is no number with a unit, TLT0312, TLT0313 or TLT0323 if it is no time here.
+    """
+    argument = expr.arguments[1].value
+    while isinstance(argument, GroupExpr):
+        argument = argument.inner
+    if not isinstance(argument, NumberExpr) or argument.unit is None:
+        title, advice = "`times_within` takes a formula and a time", "write e.g. `times_within(p, 5 s)`"
+        raise problem("TLT0210", title, env.scope.source, expr.arguments[1].value.span, advice=advice)
+    text, varies = f"{number_text(argument.value)} {argument.unit}", env.context.clock_varies
+    length = seconds(argument, "times_within(p, 5 s)", env) if varies else float(samples(argument, env))
+    truth = _truth(operand, expr, env)
+    kept = "" if env.symbolic else _kept(operand, expr, env)
+    step, unit = registers.step_length(varies), "s" if varies else "steps"
+    return text, Window(operand_text(operand), registers.begins(truth, kept), length, unit, step)
 
 
 def _operand(argument: Expr, env: Env) -> Formula:

@@ -10,6 +10,7 @@ from tltlc.diagnostics.diagnostic import Label, replacement_fix
 from tltlc.expression.tree import Const, Expression, Op
 from tltlc.grammar.tree import Expr
 from tltlc.resolve import registers, units
+from tltlc.resolve.counts_within import MOST_BEGINNINGS
 from tltlc.resolve.problem import ResolutionError, problem
 from tltlc.resolve.values import Env, Quantity, number_text
 
@@ -28,12 +29,18 @@ def up_to(
     """
     read = value.recall
     assert read is not None, "a quantity that saturates"
+    if read.window is not None and maximum > MOST_BEGINNINGS:
+        title = f"`{value.text}` would need a maximum above {MOST_BEGINNINGS}"
+        advice = f"compare it with less than {MOST_BEGINNINGS // 2}, or let the game count and supply the number"
+        raise problem("TLT0303", title, env.scope.source, expr.span, advice=advice)
     if maximum > MOST_STEPS * float(read.unit):
         most = number_text(MOST_STEPS * float(read.unit)) + ("" if read.is_count else " s")
         title = f"`{value.text}` would need a maximum above {most}"
         advice = "choose a smaller number" if read.is_count else "choose a shorter time, or a slower clock"
         raise problem("TLT0303", title, env.scope.source, expr.span, advice=advice)
     steps = max(1, ceil(maximum / float(read.unit) - 1e-9)) if read.is_whole else maximum or 1.0
+    if read.window is not None and not env.symbolic:
+        read.window.register(read.register, int(steps), env.context, env.scope.source, expr.span)
     expression: Expression = registers.saturated(read.register, steps)
     # Multiply and divide by whole numbers, so that 3 steps of 0.15 s are exactly the number 0.45.
     over, under = float(read.unit.numerator), float(read.unit.denominator)

@@ -35,6 +35,9 @@ FIRST: Final = "first sample"
 ELAPSED: Final = "time so far"
 """The name of the register with the time from the first sample to this one."""
 
+COUNTS: Final[tuple[RegisterKind, ...]] = ("times", "times_since", "times_within")
+"""The kinds of registers that count how often a formula has begun."""
+
 SATURATING: Final[tuple[RegisterKind, ...]] = (
     "times",
     "time_since",
@@ -42,6 +45,8 @@ SATURATING: Final[tuple[RegisterKind, ...]] = (
     "times_since",
     "total_time",
     "total_time_since",
+    "times_within",
+    "begun",
     "samples",
     "elapsed",
     "run",
@@ -67,7 +72,7 @@ class RegisterDraft:
         """Return the register, which stops at ``maximum`` if it is of a kind that saturates."""
         if self.kind not in SATURATING:
             return Register(self.name, self.kind, self.unit, self.low, self.high, self.initial, self.update)
-        initial = maximum if self.kind in ("time_since", "age") else self.initial
+        initial = maximum if self.kind in ("time_since", "age", "begun") else self.initial
         update = Op("min", (self.update, Const(maximum)))
         return Register(self.name, self.kind, self.unit, self.low, maximum, initial, update)
 
@@ -104,11 +109,15 @@ def previously(name: str, kept: str) -> RegisterDraft:
     return RegisterDraft(name, "previously", "", -1.0, 1.0, -1.0, Before(kept))
 
 
+def begins(operand: Condition, kept: str) -> Condition:
+    """Return the condition that p begins at this sample; ``kept`` is the register that keeps its robustness."""
+    return Condition("and", (operand, Condition("not", (holds(Before(kept)),))))
+
+
 def times(name: str, operand: Condition, kept: str) -> RegisterDraft:
     """Return the register of ``times(p)``: at how many samples p has begun to hold."""
-    begins = Condition("and", (operand, Condition("not", (holds(Before(kept)),))))
     more = Op("+", (Before(name), Const(1.0)))
-    return RegisterDraft(name, "times", "", 0.0, None, 0.0, When(((begins, more),), Before(name)))
+    return RegisterDraft(name, "times", "", 0.0, None, 0.0, When(((begins(operand, kept), more),), Before(name)))
 
 
 def times_since(name: str, operand: Condition, kept: str, event: Condition) -> RegisterDraft:
@@ -117,11 +126,11 @@ def times_since(name: str, operand: Condition, kept: str, event: Condition) -> R
     ``kept`` is the register that keeps the robustness of p, and ``event`` the truth of q. Before the
     first q, p is counted from the first sample on.
     """
-    begins = Condition("and", (operand, Condition("not", (holds(Before(kept)),))))
+    begun = begins(operand, kept)
     cases: tuple[tuple[Condition, Expression], ...] = (
-        (Condition("and", (event, begins)), Const(1.0)),
+        (Condition("and", (event, begun)), Const(1.0)),
         (event, Const(0.0)),
-        (begins, Op("+", (Before(name), Const(1.0)))),
+        (begun, Op("+", (Before(name), Const(1.0)))),
     )
     return RegisterDraft(name, "times_since", "", 0.0, None, 0.0, When(cases, Before(name)))
 

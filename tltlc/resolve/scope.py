@@ -21,6 +21,7 @@ FUNCTIONS = ("min", "max", "abs", "clamp", "sqrt", "exp", "tanh")
 MEMORY_FUNCTIONS = (
     "times",
     "times_since",
+    "times_within",
     "time_since",
     "time_holding",
     "total_time",

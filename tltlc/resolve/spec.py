@@ -101,6 +101,8 @@ RegisterKind = Literal[
     "times_since",
     "total_time",
     "total_time_since",
+    "times_within",
+    "begun",
     "previous",
     "initial",
     "highest",

@@ -12,6 +12,7 @@ from tltlc.diagnostics.diagnostic import Label
 from tltlc.expression.tree import Const, Expression, Op
 from tltlc.logic.formula import Formula
 from tltlc.resolve.context import Context
+from tltlc.resolve.counts_within import Window
 from tltlc.resolve.ranges import overflows, range_of
 from tltlc.resolve.scope import Scope
 from tltlc.resolve.units import Dimension, si_unit
@@ -36,7 +37,8 @@ class Recall:
 
     ``unit`` is the size of one unit of the register: the seconds of a step, or 1. ``is_count`` marks a
     count, and ``is_whole`` a register that has whole numbers only. ``limit`` is the place where the
-    maximum is written; None if the quantity has no maximum yet.
+    maximum is written; None if the quantity has no maximum yet. ``window`` is the time in which a count
+    looks back; None for one of all the trace so far.
     """
 
     register: str
@@ -44,6 +46,7 @@ class Recall:
     is_count: bool
     is_whole: bool = True
     limit: Label | None = None
+    window: Window | None = None
 
 
 @record

@@ -28,7 +28,7 @@ syntax match tltlWord "\v%(\w|\))@1<=\s+\zs<is>\ze\s+%(not\s+)?%(%(and|or|implie
 syntax match tltlWord "\v<as>\ze\s+%(\a|_)"
 syntax match tltlWord "\v%(\"\s*)@8<=<for>\ze\s+%(\a|_)"
 syntax match tltlType "\v:\s*\zs<%(number|ratio|length|time|speed|angle|int|bool|entity|formula)>%(\s*[.(<>+*/^-])@!"
-syntax match tltlFunction "\v<%(min|max|abs|clamp|sqrt|exp|tanh|times|times_since|time_since|time_holding|total_time|total_time_since|previous|initial|highest|lowest|highest_since|lowest_since|value_at)>\ze\s*\("
+syntax match tltlFunction "\v<%(min|max|abs|clamp|sqrt|exp|tanh|times|times_since|times_within|time_since|time_holding|total_time|total_time_since|previous|initial|highest|lowest|highest_since|lowest_since|value_at)>\ze\s*\("
 
 syntax match tltlNumber "\v<\d+%(\.\d+)?%([eE][+-]?\d+)?%(x>)?" nextgroup=tltlUnit skipwhite
 syntax match tltlUnit contained "\v\%|%(steps|step|deg|min|rad|Hz|cm|km|ms|h|m|s)>%(\.\a)@!"

@@ -12,7 +12,7 @@ from tltlc.core.names import ComparisonName
 from tltlc.core.record import record, replace
 from tltlc.logic.formula import FALSE, TRUE, Formula, and_, atom, not_, or_
 from tltlc.logic.text.phrases import is_state, object_phrase
-from tltlc.resolve.registers import SATURATING
+from tltlc.resolve.registers import COUNTS, SATURATING
 from tltlc.resolve.spec import Atom, Register, RegisterKind
 
 CLOCK: Final = "◷"
@@ -26,6 +26,7 @@ _KINDS: Final[dict[RegisterKind, str]] = {
     "time_since": "time since",
     "time_holding": "time without a break",
     "times_since": "count since an event",
+    "times_within": "count in the last seconds",
     "total_time": "time in all",
     "total_time_since": "time in all since an event",
     "previous": "value before",
@@ -42,8 +43,6 @@ _KINDS: Final[dict[RegisterKind, str]] = {
     "waiting": "longest wait",
 }
 """The kinds of registers that the legend shows, in words. The others only serve these."""
-
-_COUNTS: Final = ("times", "times_since")
 
 
 @record
@@ -115,7 +114,7 @@ def _parts(formula: Formula, op: str) -> tuple[Formula, ...]:
 def _timer(item: Atom, register: Register, registers: Mapping[str, Register], speaker: Speaker) -> Timer | None:
     if isinstance(item.base, ComparisonName):
         event = (
-            counted(register, registers) if item.base.left == register.name and register.kind not in _COUNTS else None
+            counted(register, registers) if item.base.left == register.name and register.kind not in COUNTS else None
         )
         return None if event is None else _since(f"{item.base.right} s", register, _say(event, speaker))
     if item.timer is None or not item.arguments or register.kind == "due":
@@ -163,7 +162,7 @@ def _name(register: Register, registers: Mapping[str, Register], speaker: Speake
     if answer is not None:
         goal = _say(answer.goal, speaker)
         return goal if answer.request is TRUE else f"{goal} after {_say(answer.request, speaker)}"
-    event = None if register.kind in _COUNTS else counted(register, registers)
+    event = None if register.kind in COUNTS else counted(register, registers)
     return register.name if event is None else _say(event, speaker)
 
 

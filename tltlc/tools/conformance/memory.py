@@ -136,6 +136,7 @@ def _events_case() -> ConformanceCase:
 {_DECLARATIONS}spec since_events {{
     keep times_since(a, b) <= 3 or total_time(b) > 1 s
     keep times_since(x > 0.25, begins c, 5) != 4 or y >= value_at(y, begins a)
+    keep times_within(d, 0.5 s) <= 2 or times_within(x > 0.25, 3 steps, 2) != 1
     keep total_time_since(c, begins a) <= 1 s or highest_since(x, b) > lowest_since(y, a)
     require always eventually (value_at(x + y / 2, b) > x or times_since(d, e and a) == 2)
 }}

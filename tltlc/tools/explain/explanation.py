@@ -198,7 +198,7 @@ def _memory(fspa: Fspa) -> tuple[Remembered, ...]:
             register.high if register.kind in SATURATING else None,
         )
         for register in fspa.registers
-        if register.kind not in ("last", "first", "breach")
+        if register.kind not in ("last", "first", "breach", "begun")
     )
 
 

@@ -18,6 +18,7 @@ _TRUTHS: Final = ("once", "historically", "since", "due")
 _AMOUNTS: Final = (
     "times",
     "times_since",
+    "times_within",
     "time_since",
     "time_holding",
     "total_time",
