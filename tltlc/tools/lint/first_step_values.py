@@ -7,7 +7,18 @@ from typing import Final
 
 from tltlc.core.record import record, replace
 from tltlc.expression.evaluate import evaluate
-from tltlc.expression.tree import AtomValue, Before, Condition, Const, Expression, Op, SignalValue, When, nodes
+from tltlc.expression.tree import (
+    AtomValue,
+    Before,
+    Condition,
+    Const,
+    Expression,
+    Op,
+    SignalValue,
+    StepLength,
+    When,
+    nodes,
+)
 from tltlc.logic.formula import Formula, and_, atom, not_
 from tltlc.resolve.spec import Atom, Param, Register, Signal
 from tltlc.tools.lint.atom_signs import can_be, is_always
@@ -50,6 +61,10 @@ def _is_positive(value: Atom, declared: _DeclaredSignals) -> bool:
     return expression.value > 0 if isinstance(expression, Const) else is_always("positive", value, declared)
 
 
+class _NotKnownError(Exception):
+    """A value at the first step depends on the length of a step, which only a clock that varies asks for."""
+
+
 class _FirstStep:
     """The values that registers and atoms have at the first step, as expressions of the signals there."""
 
@@ -61,10 +76,10 @@ class _FirstStep:
         return any(isinstance(node, SignalValue) and node.name in self._registers for node in nodes(expression))
 
     def expression(self, expression: Expression) -> Expression | None:
-        """Return an expression without registers that has the same value at the first step; None if it is large."""
+        """Return an expression without registers that has the same value at the first step; None if it is large or not known."""
         try:
             first = self._value(expression)
-        except (RecursionError, KeyError):
+        except (RecursionError, _NotKnownError):
             return None
         return first if sum(1 for _ in nodes(first)) <= _MOST_NODES else None
 
@@ -76,6 +91,8 @@ class _FirstStep:
                 return Const(self._registers[name].initial)
             case AtomValue(name=name):
                 return self._value(self._atoms[name].expression)
+            case StepLength():
+                raise _NotKnownError
             case Op():
                 args = tuple(map(self._value, expression.args))
                 folded = Op(expression.op, args)

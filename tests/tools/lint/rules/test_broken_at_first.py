@@ -102,3 +102,4 @@ def test_a_clock_that_varies_has_the_same_first_step() -> None:
     before = "clock varies\nsignal a: bool\n"
     assert len(warnings(block("keep total_time(a) >= 3 s", before=before))) == 1
     assert warnings(block("keep total_time(a) <= 3 s", before=before)) == []
+    assert warnings(block("keep a implies time_since(a) < 3 s", before=before)) == []
