@@ -76,7 +76,7 @@ class _FirstStep:
         return any(isinstance(node, SignalValue) and node.name in self._registers for node in nodes(expression))
 
     def expression(self, expression: Expression) -> Expression | None:
-        """Return an expression without registers that has the same value at the first step; None if it is large or not known."""
+        """Return an expression without registers that has the same value at the first step, or None."""
         try:
             first = self._value(expression)
         except (RecursionError, _NotKnownError):
