@@ -223,9 +223,22 @@ def test_another_word_behind_a_number_is_no_unit() -> None:
     ],
 )
 def test_a_word_that_the_language_does_not_know_is_named(clause: str, word: str) -> None:
-    help_ = error_of(clause).help or ""
-    assert help_.startswith(f"the language does not know the word `{word}`")
-    assert "docs/guides/phrases.md" in help_
+    error = error_of(clause)
+    assert f"the language has no word `{word}`" in f"{error.title}\n{error.help}"
+    assert "docs/guides/phrases.md" in (error.help or "")
+
+
+@pytest.mark.parametrize(
+    ("clause", "title"),
+    [
+        ("keep hidden unless alarm", "the language has no word `unless`"),
+        ("keep hidden if alarm", "the language has no word `if`"),
+        ("reach seen within 5 s", "`within` cannot stand here"),
+        ("keep hidden for 3 s", "`for` cannot stand here"),
+    ],
+)
+def test_words_of_the_language_are_misplaced_and_other_words_are_unknown(clause: str, title: str) -> None:
+    assert error_of(clause).title == title
 
 
 def test_a_help_in_the_words_of_the_file_stays() -> None:

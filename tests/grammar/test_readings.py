@@ -254,7 +254,7 @@ def test_an_answer_in_an_unclear_rule_gets_a_general_help(clause: str) -> None:
 def test_after_is_no_predicate(clause: str) -> None:
     _, error = error_of(clause, NAMES)
     assert error.fixes == ()
-    assert error.title == "`after` is not an operator"
+    assert error.title == "`after` cannot stand here"
     assert "after(a)" not in (error.help or "")
 
 

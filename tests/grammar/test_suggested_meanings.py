@@ -356,5 +356,5 @@ def test_never_for_a_time_gets_both_readings(clause: str) -> None:
 def test_an_error_after_a_value_of_an_enum_does_not_blame_is(value: str) -> None:
     _, error = error_of(f"avoid mode is {value} for 2 s")
     assert error.fixes == ()
-    assert error.title == "`for` is not an operator"
+    assert error.title == "`for` cannot stand here"
     assert f"`avoid time_holding(mode is {value}) >= 2 s` if it must never hold that long" in (error.help or "")

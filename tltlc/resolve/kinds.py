@@ -57,7 +57,7 @@ def lookup(use: NameExpr | CallExpr, env: Env, kinds: tuple[BindingKind, ...], n
     if use.name in CONDITIONS and isinstance(use, CallExpr):
         raise problem(
             "TLT0201",
-            f"`{use.name}` is not an operator",
+            f"the language has no word `{use.name}`",
             env.scope.source,
             span,
             advice="for `if a, then b`, write `a implies b`; if both must hold at the same step, write `a and b`",

@@ -11,7 +11,7 @@ from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.grammar.mistakes.english_rewrite import FIXED_CLOCK
 from tltlc.grammar.mistakes.english_times import time_at
 from tltlc.grammar.mistakes.one_reading import TEMPORAL, has_token, is_of_one_step
-from tltlc.grammar.mistakes.parse_failure import INFIX, ParseFailure, outer_indices, quote_token
+from tltlc.grammar.mistakes.parse_failure import INFIX, ParseFailure, outer_indices
 from tltlc.grammar.mistakes.rephrasing import operand_text, text_of
 
 _RULES: Final = ("IMPLIES", "IFF")
@@ -42,7 +42,7 @@ def answer_in_rule(failure: ParseFailure) -> Diagnostic | None:
     if tokens[within - 1].type in TEMPORAL | INFIX:
         return None  # `eventually within 2 s of b`
     time, event = written[0].text, written[1] + 1
-    title, span = f"{quote_token(tokens[within])} is not an operator", tokens[within].span
+    title, span = failure.misplaced(tokens[within]), tokens[within].span
     if failure.lacks_fixed_clock(time):
         return failure.error("TLT0101", title, FIXED_CLOCK, span=span)
     at, op = operators[0], tokens[operators[0]].text

@@ -8,7 +8,7 @@ from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.grammar.mistakes.english_forms import FOR_TIME, IN_TIME, Forms
 from tltlc.grammar.mistakes.english_rewrite import FIXED_CLOCK, Time, clause_keyword
 from tltlc.grammar.mistakes.one_reading import QUANTIFIERS, has_token, is_of_one_step
-from tltlc.grammar.mistakes.parse_failure import INFIX, ParseFailure, outer_indices, quote_token
+from tltlc.grammar.mistakes.parse_failure import INFIX, ParseFailure, outer_indices
 from tltlc.grammar.mistakes.repeats import TokenRange
 from tltlc.grammar.mistakes.rephrasing import (
     formula_start,
@@ -90,7 +90,7 @@ def _with_readings(
     failure: ParseFailure, at: int, part: TokenRange, readings: list[tuple[str, str]]
 ) -> Diagnostic | None:
     """Return the error for the word at an index that names the readings of a part; None if one cannot be parsed."""
-    tokens, (begin, stop), title = failure.tokens, part, f"{quote_token(failure.tokens[at])} is not an operator"
+    tokens, (begin, stop), title = failure.tokens, part, failure.misplaced(failure.tokens[at])
     before, clause = tokens[begin - 1].type, failure.start == "clause" and begin == 1
     if clause and (before not in _WHOLE or (before == "KEEP" and " until " not in readings[0][0])):
         return None

@@ -164,7 +164,7 @@ def synonym_inside_formula(failure: ParseFailure) -> Diagnostic | None:
     )
     if before is None or keyword is None or at < 1:
         return None
-    start, stop, title = formula_start(failure), formula_stop(failure), f"{quote_token(before)} is not an operator"
+    start, stop, title = formula_start(failure), formula_stop(failure), failure.misplaced(before)
     if failure.tokens[at - 1].type == "THEN" and not _is_next_goal(failure, keyword):
         return failure.error("TLT0101", title, _BEHIND_THEN, span=before.span)
     diagnostic = None

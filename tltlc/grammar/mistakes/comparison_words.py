@@ -10,7 +10,7 @@ from tltlc.grammar.lexer import END
 from tltlc.grammar.mistakes.counts_in_words import COMPARISONS
 from tltlc.grammar.mistakes.declared_names import declared_names
 from tltlc.grammar.mistakes.english_rewrite import clause_keyword
-from tltlc.grammar.mistakes.parse_failure import ParseFailure, quote_token
+from tltlc.grammar.mistakes.parse_failure import ParseFailure
 from tltlc.grammar.mistakes.rephrasing import (
     formula_start,
     operand_end,
@@ -66,10 +66,10 @@ def comparison_in_words(failure: ParseFailure) -> Diagnostic | None:
         is_goal = clause_keyword(failure) == "reach" and first == formula_start(failure) and is_end
         # `reach health below 20` is a goal; `reach coins at most 50` may be a rule.
         if is_goal and sign == "<=" and value == "NUMBER":
-            title, number = f"{quote_token(failure.token)} is not an operator", failure.tokens[at + length].text
+            title, number = failure.misplaced(failure.token), failure.tokens[at + length].text
             return _small_goal(failure, text_of(failure, 1, at), sign, number, title)
         if value == "NUMBER" or (value == "NAME" and phrase[0] not in ("at", "up")):
-            title, span = f"{quote_token(failure.token)} is not an operator", span_of(failure.tokens[at : at + length])
+            title, span = failure.misplaced(failure.token), span_of(failure.tokens[at : at + length])
             return failure.error("TLT0101", title, f"write `{sign}`", span=span, write=sign)
     return None
 
@@ -95,7 +95,7 @@ def _number_first(failure: ParseFailure) -> Diagnostic | None:
         number = start + len(phrase)
         if not phrase or tokens[number].type != "NUMBER":
             continue
-        sign, title = COMPARISONS[phrase], f"{quote_token(tokens[start])} is not an operator"
+        sign, title = COMPARISONS[phrase], failure.misplaced(tokens[start])
         stop = operand_end(tokens, number + 1)
         is_compared = stop is not None and declared_names(failure.source).type_of(tokens[number + 1].text) in _NUMBERS
         is_goal = clause_keyword(failure) == "reach" and start == formula_start(failure)

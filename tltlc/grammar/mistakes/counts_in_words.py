@@ -12,7 +12,7 @@ from tltlc.grammar.mistakes.declared_names import declared_names
 from tltlc.grammar.mistakes.english_rewrite import FIXED_CLOCK, clause_keyword
 from tltlc.grammar.mistakes.english_times import time_at
 from tltlc.grammar.mistakes.parse_failure import COMPARISONS as SIGNS
-from tltlc.grammar.mistakes.parse_failure import INFIX, ParseFailure, quote_token
+from tltlc.grammar.mistakes.parse_failure import INFIX, ParseFailure
 from tltlc.grammar.mistakes.repeats import begun_again, quantified_body
 from tltlc.grammar.mistakes.rephrasing import (
     formula_start,
@@ -134,7 +134,7 @@ def _error(
     """
     tokens, end = failure.tokens, end or count.stop
     span, is_whole = span_of(tokens[count.start : count.stop]), tokens[end].type == END
-    title = f"{quote_token(tokens[count.start])} is not an operator" if count.sign else "a count is a comparison"
+    title = failure.misplaced(tokens[count.start]) if count.sign else "a count is a comparison"
     has_default = keyword in ("reach", "avoid", "never") and not count.sign
     sign = ">=" if has_default else count.sign
     if count.time:
@@ -193,7 +193,7 @@ def _timed_comparison(failure: ParseFailure) -> Diagnostic | None:
     begin = operand_start(tokens, at - 2) if time is not None and at > 2 else None
     if time is None or begin is None or tokens[begin].text != "times" or tokens[at - 1].type != "NUMBER":
         return None
-    title, help_ = f"{quote_token(tokens[at])} is not an operator", FIXED_CLOCK
+    title, help_ = failure.misplaced(tokens[at]), FIXED_CLOCK
     if not failure.lacks_fixed_clock(time[0].text):
         operand = text_of(failure, begin + 2, at - 3)
         count = _Count(tokens[at - 2].text, tokens[at - 1].text, time[0].text, begin, at)
@@ -218,7 +218,7 @@ def _timed_times(failure: ParseFailure) -> Diagnostic | None:
     end = None if begin is None or tokens[begin].text != "times" else operand_end(tokens, begin)
     if begin is None or end is None or end < begin + 3:
         return None
-    title, help_ = f"{quote_token(tokens[at])} is not an operator", FIXED_CLOCK
+    title, help_ = failure.misplaced(tokens[at]), FIXED_CLOCK
     if not failure.lacks_fixed_clock(time[0].text):
         operator, number = (token.text for token in tokens[sign : sign + 2]) if tokens[sign].type in SIGNS else ("", "")
         count = _Count(operator, number, time[0].text, begin, at)

@@ -10,7 +10,7 @@ from tltlc.grammar.mistakes.declared_names import declared_names
 from tltlc.grammar.mistakes.english_rewrite import Time
 from tltlc.grammar.mistakes.english_times import time_at
 from tltlc.grammar.mistakes.one_reading import QUANTIFIERS, has_token, is_of_one_step
-from tltlc.grammar.mistakes.parse_failure import INFIX, ParseFailure, quote_token
+from tltlc.grammar.mistakes.parse_failure import INFIX, ParseFailure
 from tltlc.grammar.mistakes.repeats import quantified_body
 from tltlc.grammar.mistakes.rephrasing import (
     last_index_of,
@@ -57,7 +57,7 @@ def duration_in_words(failure: ParseFailure) -> Diagnostic | None:
         return None
     keyword = tokens[0].text.lower()
     begin, head = quantified_body(failure, tokens[0].text)
-    time, title = _in_seconds(failure, written[0]), f"{quote_token(tokens[at])} is not an operator"
+    time, title = _in_seconds(failure, written[0]), failure.misplaced(tokens[at])
     sign, condition = _COMPARISONS[phrase], last_index_of(failure, {"IMPLIES"}, begin)
     second = begin if condition is None else condition + 1
     is_one = second < at and is_of_one_step(failure, begin, at)

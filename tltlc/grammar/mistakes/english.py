@@ -67,7 +67,7 @@ def plain_english(failure: ParseFailure) -> Diagnostic | None:
         if forms is None or word.type not in ("NAME", "WHEN"):
             continue
         if failure.tokens[0].type == "PREDICATE":
-            return failure.error("TLT0101", f"{quote_token(word)} is not an operator", CASES, span=word.span)
+            return failure.error("TLT0101", failure.misplaced(word), CASES, span=word.span)
         if word.text == "without" and clause_keyword(failure) in ("reach", "keep"):
             return _without_error(failure)
         if at == failure.stop.index and not is_timed and (diagnostic := condition_behind_rule(failure)):
@@ -99,7 +99,7 @@ def _without_error(failure: ParseFailure) -> Diagnostic:
     is_clear = len(goals) == 1 and is_clear_word(failure, "without", *sides, clause_keyword(failure))
     write = "avoid" if is_clear else None
     return failure.error(
-        "TLT0101", "`without` is not an operator", f"{'write' if is_clear else 'use'} {help_}", write=write
+        "TLT0101", failure.misplaced(failure.token), f"{'write' if is_clear else 'use'} {help_}", write=write
     )
 
 
@@ -129,11 +129,9 @@ def _infix_word_error(failure: ParseFailure, forms: Forms) -> Diagnostic:
     )
     if is_clear and form == KEPT_BEFORE and first != "NOT":
         # It may ask that a comes first, or that a holds all the time before.
-        return failure.error(
-            "TLT0101", f"{quote_token(failure.token)} is not an operator", kept_before_help(parts.a, parts.b)
-        )
+        return failure.error("TLT0101", failure.misplaced(failure.token), kept_before_help(parts.a, parts.b))
     if word == "before" and kind == "reach" and end == stop and begin == formula_start(failure):
-        title, help_ = f"{quote_token(failure.token)} is not an operator", reached_before_help(parts.a, parts.b)
+        title, help_ = failure.misplaced(failure.token), reached_before_help(parts.a, parts.b)
         text = f"require (not {parts.b}) until {parts.a}"
         if is_clear and suggest_rewrite(failure, 0, stop, text, title):
             return failure.error("TLT0101", title, help_, span=span_of(failure.tokens[:-1]))
@@ -169,7 +167,7 @@ def _prefix_word_error(failure: ParseFailure, at: int, forms: Forms, *, timed: b
     keyword = failure.tokens[second].text
     if keyword in _FROM_THEN_ON:
         title = (
-            f"{quote_token(failure.tokens[at])} is not an operator"
+            failure.misplaced(failure.tokens[at])
             if at
             else f"a clause cannot begin with {quote_token(failure.tokens[at])}"
         )

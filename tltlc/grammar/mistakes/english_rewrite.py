@@ -34,7 +34,7 @@ def rewrite_error(
     with the letters a, b and c. ``time`` is the time in the phrase, None if it has no certain unit.
     """
     word, kind = failure.tokens[at], clause_keyword(failure)
-    title = f"{quote_token(word)} is not an operator" if at else f"a clause cannot begin with {quote_token(word)}"
+    title = failure.misplaced(word) if at else f"a clause cannot begin with {quote_token(word)}"
     code = "TLT0101" if at else "TLT0107"
     start, stop = part
     is_timed = form in TIMED

@@ -132,9 +132,7 @@ def prefix_time_error(failure: ParseFailure, at: int, forms: Forms) -> Diagnosti
         span, text = span_of(failure.tokens[at:second]), f"within {time.text}"
         operand = text_of(failure, second, operand_end(failure.tokens, second) or second)
         help_ = f"write `{f'once {text} {operand}'.strip()}`"
-        return failure.error(
-            "TLT0101", f"{quote_token(failure.tokens[at])} is not an operator", help_, span=span, write=text
-        )
+        return failure.error("TLT0101", failure.misplaced(failure.tokens[at]), help_, span=span, write=text)
     is_clear = is_clear_unit and _is_clear_operand(failure, second, stop)
     if at == first and kind == "avoid" and forms is FOR_TIME:
         is_clear = _is_clear_operand(failure, second, stop) and failure.tokens[second].type not in _UNARY
@@ -176,7 +174,7 @@ def prefix_time_error(failure: ParseFailure, at: int, forms: Forms) -> Diagnosti
 
 def _chain_error(failure: ParseFailure, goal: str, time: Time) -> Diagnostic:
     """Return the error for a time behind three goals or more: `reach a then b then c within 5 s`."""
-    title = f"{quote_token(failure.token)} is not an operator"
+    title = failure.misplaced(failure.token)
     if failure.lacks_fixed_clock(time.text):
         return failure.error("TLT0101", title, FIXED_CLOCK)
     help_ = (
@@ -197,7 +195,7 @@ def _arrival_error(failure: ParseFailure, part: tuple[int, int, int], time: Time
     if failure.tokens[first].type in ("BEGINS", "ENDS") or not all(_is_clear_operand(failure, *goal) for goal in goals):
         return None
     before, goal = (operand_text(failure, *goal) for goal in goals)
-    title, rest = f"{quote_token(failure.token)} is not an operator", f"then within {time.text} {goal}"
+    title, rest = failure.misplaced(failure.token), f"then within {time.text} {goal}"
     if failure.lacks_fixed_clock(time.text):
         return failure.error("TLT0101", title, FIXED_CLOCK)
     help_ = (
@@ -224,7 +222,7 @@ def _kept_error(failure: ParseFailure, at: int, part: tuple[int, int] | None, ti
         help_ = FIXED_CLOCK
     word = failure.tokens[at]
     span = span_of(failure.tokens[:-1]) if part else word.span
-    return failure.error("TLT0101", f"{quote_token(word)} is not an operator", help_, span=span)
+    return failure.error("TLT0101", failure.misplaced(word), help_, span=span)
 
 
 def _lasting_error(failure: ParseFailure, part: tuple[int, int], end: int, time: Time, *, is_clear: bool) -> Diagnostic:
@@ -232,7 +230,7 @@ def _lasting_error(failure: ParseFailure, part: tuple[int, int], end: int, time:
 
     ``part`` is the range of token indices of what holds. The time counts from the step of ``a`` on.
     """
-    title, (begin, at) = f"{quote_token(failure.token)} is not an operator", part
+    title, (begin, at) = failure.misplaced(failure.token), part
     if failure.lacks_fixed_clock(time.text):
         return failure.error("TLT0101", title, FIXED_CLOCK)
     operand, text = operand_text(failure, begin, at), f"always for {time.text}"
@@ -249,7 +247,7 @@ def _sequence_error(failure: ParseFailure, part: tuple[int, int], time: Time) ->
     ``part`` is the range of token indices of the sequence and its time.
     """
     (begin, end), at, limit = part, failure.stop.index, f"within {time.text}"
-    title = f"{quote_token(failure.token)} is not an operator"
+    title = failure.misplaced(failure.token)
     if failure.lacks_fixed_clock(limit):
         return failure.error("TLT0101", title, FIXED_CLOCK)
     then = last_index_of(failure, {"THEN"}, begin)
@@ -366,7 +364,7 @@ def _avoided_error(failure: ParseFailure, at: int, operand: str, time: Time) -> 
     """Return the error for `avoid a for 3 s`, where ``at`` is the index of `for`."""
     help_ = FIXED_CLOCK if failure.lacks_fixed_clock(time.text) else _readings_of_avoided(operand, time)
     word = failure.tokens[at]
-    return failure.error("TLT0101", f"{quote_token(word)} is not an operator", help_, span=word.span)
+    return failure.error("TLT0101", failure.misplaced(word), help_, span=word.span)
 
 
 def _shown_time(failure: ParseFailure, time: Time, written: Time | None) -> Time:

@@ -19,7 +19,6 @@ from tltlc.grammar.mistakes.parse_failure import (
     OPENING,
     ParseFailure,
     outer_indices,
-    quote_token,
 )
 from tltlc.grammar.mistakes.rephrasing import (
     formula_start,
@@ -250,7 +249,7 @@ def verb_is(failure: ParseFailure) -> Diagnostic | None:
     while tokens[second].text in _WORDS_OF_EQUALITY:
         second += 1
     start, stop = value_end(tokens, at, -1), value_end(tokens, second - 1, 1)
-    title = f"{quote_token(failure.token)} is not an operator"
+    title = failure.misplaced(failure.token)
     diagnostic = (
         _typed_equality(failure, (start, at), (second, stop), is_unequal, title, "TLT0101")
         or _equal_numbers(failure, (start, at), (second, stop), is_unequal, title)

@@ -37,7 +37,7 @@ def filler_word(failure: ParseFailure) -> Diagnostic | None:
                 help_ = "use a predicate, as in `near(a)`"
                 if word.text in ("either", "both"):
                     help_ = "put brackets around what it joins, as in `not (a or b)` or `c and (a or b)`"
-                return failure.error("TLT0101", f"{quote_token(word)} is not an operator", help_, span=word.span)
+                return failure.error("TLT0101", failure.misplaced(word), help_, span=word.span)
     return None
 
 

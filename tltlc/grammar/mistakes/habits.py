@@ -171,7 +171,7 @@ def _truth_of_comparison(failure: ParseFailure) -> Diagnostic:
     """Return the error for `is true` or `is false` after a comparison, as in ``health > 3 is true``."""
     tokens, at = failure.tokens, failure.stop.index
     span = span_of(tokens[at - 1 : at + 2])
-    title = f"{quote_token(tokens[at])} is not an operator"
+    title = failure.misplaced(tokens[at])
     if tokens[at + 1].text == "true":
         help_ = f"leave out `{tokens[at].text} true`: a comparison is true or false by itself"
         return failure.error("TLT0101", title, help_, span=span, write=tokens[at - 1].text)

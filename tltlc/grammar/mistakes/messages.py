@@ -294,7 +294,7 @@ def _misspelt_operator(failure: ParseFailure) -> Diagnostic | None:
         return failure.error("TLT0101", title, f"write `{letters}`", span=before.span, write=letters)
     if token.text.lower() == "else":
         help_ = f"write `a or b` to require at least one of the two; {CASES}"
-        return failure.error("TLT0101", "`else` is not an operator", help_)
+        return failure.error("TLT0101", failure.misplaced(token), help_)
     words = tuple(word for word, terminal in load().words.items() if terminal in INFIX and len(word) > 1)
     suggestion = closest_word(token.text, words) if token.type == "NAME" else None
     if suggestion and is_before_operand(failure):
@@ -308,7 +308,7 @@ def _misspelt_operator(failure: ParseFailure) -> Diagnostic | None:
         operator = operator if before.text[:1].lower() == operator[:1] or before.text.lower() == operator[1:] else ""
     if not operator or before.type != "NAME":
         return None
-    title = f"`{before.text}` is not an operator"
+    title = failure.misplaced(before)
     if operator == "no" and has_token(failure, failure.stop.index, formula_stop(failure), INFIX):
         return failure.error(
             "TLT0101", title, "write `(not a) or b` to negate `a` alone, `not (a or b)` to negate both"

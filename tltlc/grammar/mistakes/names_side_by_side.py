@@ -27,16 +27,14 @@ def names_side_by_side(failure: ParseFailure) -> Diagnostic | None:
         title = f"expected an operator between {quote_token(before)} and {quote_token(token)}"
         return failure.error("TLT0101", title, "join formulas with `and`, `or` or `then`")
     if is_before_operand(failure):
-        return failure.error(
-            "TLT0101", f"{quote_token(token)} is not an operator", "join formulas with `and`, `or` or `then`"
-        )
+        return failure.error("TLT0101", failure.misplaced(token), "join formulas with `and`, `or` or `then`")
     text = f"{before.text}({token.text})"
     known = declared_names(failure.source)
     declared = known.names.get(before.text)
     is_unknown = declared is None and not (known.names and not known.has_imports)
     takes_arguments = is_unknown or (declared is not None and bool(declared.parameters))
     if before.text == "after" and before.text not in declared_names(failure.source).names:
-        return failure.error("TLT0101", "`after` is not an operator", _AFTER, span=before.span)
+        return failure.error("TLT0101", failure.misplaced(before), _AFTER, span=before.span)
     help_ = f"write `{text}` if `{before.text}` applies to `{token.text}`; otherwise join them with `and` or `then`"
     title = f"{quote_token(before)} and {quote_token(token)} are not joined"
     if not takes_arguments:

@@ -11,7 +11,7 @@ from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.grammar.mistakes.english_rewrite import FIXED_CLOCK
 from tltlc.grammar.mistakes.english_times import time_at
 from tltlc.grammar.mistakes.one_reading import has_token, is_of_one_step
-from tltlc.grammar.mistakes.parse_failure import INFIX, ParseFailure, outer_indices, quote_token
+from tltlc.grammar.mistakes.parse_failure import INFIX, ParseFailure, outer_indices
 from tltlc.grammar.mistakes.rephrasing import operand_text, text_of
 
 _READINGS: Final = (
@@ -37,7 +37,7 @@ def negated_answer_in_rule(failure: ParseFailure) -> Diagnostic | None:
     state = _negated_state(failure, begin, within, may_be_bare=True)
     if state is None or has_token(failure, begin, within, {"COMMA"}):
         return None
-    title, time, span = f"{quote_token(tokens[within])} is not an operator", written[0].text, tokens[within].span
+    title, time, span = failure.misplaced(tokens[within]), written[0].text, tokens[within].span
     if failure.lacks_fixed_clock(time):
         return failure.error("TLT0101", title, FIXED_CLOCK, span=span)
     help_ = _READINGS_IN_RULE.format(time=time, state=state, answer=text_of(failure, begin, within))
@@ -68,9 +68,7 @@ def negated_answer_error(
         answer=text_of(failure, *answer),
         time=time,
     )
-    return failure.error(
-        "TLT0101", f"{quote_token(failure.tokens[word])} is not an operator", help_, span=failure.tokens[word].span
-    )
+    return failure.error("TLT0101", failure.misplaced(failure.tokens[word]), help_, span=failure.tokens[word].span)
 
 
 def _negated_state(failure: ParseFailure, begin: int, end: int, *, may_be_bare: bool = False) -> str | None:

@@ -13,6 +13,7 @@ from tltlc.grammar import lalr
 from tltlc.grammar.keywords import CLAUSES, DECLARATIONS, TEST_ITEMS
 from tltlc.grammar.lexer import END, Token, tokenize
 from tltlc.grammar.mistakes.declared_names import declared_names
+from tltlc.grammar.past_words import FUNCTIONS
 from tltlc.grammar.tables import load
 
 KEYWORDS: Final = {"declaration": DECLARATIONS, "clause": CLAUSES, "test_item": TEST_ITEMS}
@@ -137,6 +138,21 @@ class ParseFailure:
         text = self.source.text
         inside = [token for token in self.tokens if span.start <= token.start and token.end <= span.end]
         return any("//" in text[left.end : right.start] for left, right in pairwise(inside))
+
+    def misplaced(self, token: Token | None) -> str:
+        """Return a title for a word that stands where an operator could: "the language has no word `unless`".
+
+        Words of the language, names of the file and signs cannot stand there.
+        """
+        word = token.text if token else ""
+        known = (load().words, load().soft, FUNCTIONS, declared_names(self.source).names)
+        is_known = any(word in words for words in known)
+        is_foreign = not is_known and word.isidentifier()
+        return (
+            f"the language has no word {quote_token(token)}"
+            if is_foreign
+            else f"{quote_token(token)} cannot stand here"
+        )
 
     def expectation(self) -> str:
         """Return a title for the error: "expected a formula after `keep`, found `)`"."""

@@ -55,10 +55,10 @@ def _recent(failure: ParseFailure) -> Diagnostic | None:
         return None
     length, end = time
     if failure.lacks_fixed_clock(length.text):
-        return failure.error("TLT0101", f"{quote_token(failure.token)} is not an operator", FIXED_CLOCK)
+        return failure.error("TLT0101", failure.misplaced(failure.token), FIXED_CLOCK)
     operand = text_of(failure, start, at)
     text = f"once within {length.text} {operand}"
-    title, before = f"{quote_token(failure.token)} is not an operator", tokens[start - 1].type
+    title, before = failure.misplaced(failure.token), tokens[start - 1].type
     if words[0] == "for":
         window = f"historically for {length.text} {operand}"
         text = f"time_holding({operand}) >= {length.text}" if length.is_real else window
@@ -96,7 +96,7 @@ def _prefix(failure: ParseFailure) -> Diagnostic | None:
         return _before_error(failure, end, "p" if declared.has_imports else operand)
     if word in declared.names:
         return None
-    operand, title = text_of(failure, at + 1, end), f"{quote_token(tokens[at])} is not an operator"
+    operand, title = text_of(failure, at + 1, end), failure.misplaced(tokens[at])
     if word in _LETTERS and not declared.has_imports:
         return suggest_rewrite(failure, at, end, f"{_LETTERS[word]} {operand}", title)
     if word == "previous":
@@ -120,7 +120,7 @@ def _postfix(failure: ParseFailure) -> Diagnostic | None:
     start, word = operand_start(tokens, at), failure.token.text
     if start is None:
         return None
-    title, declared = f"{quote_token(failure.token)} is not an operator", declared_names(failure.source)
+    title, declared = failure.misplaced(failure.token), declared_names(failure.source)
     may_be_name = word in declared.names or declared.has_imports
     if word == "S" and not may_be_name and (end := operand_end(tokens, at + 1)) is not None:
         text = f"{text_of(failure, start, at)} since {text_of(failure, at + 1, end)}"
@@ -148,4 +148,4 @@ def _before_error(failure: ParseFailure, at: int, operand: str) -> Diagnostic:
         "have held at the step right before this one"
     )
     word = failure.tokens[at]
-    return failure.error("TLT0101", f"{quote_token(word)} is not an operator", help_, span=word.span)
+    return failure.error("TLT0101", failure.misplaced(word), help_, span=word.span)

@@ -10,7 +10,7 @@ from typing import Final
 from tltlc.core.record import record
 from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.grammar.mistakes.english_rewrite import FIXED_CLOCK
-from tltlc.grammar.mistakes.parse_failure import ParseFailure, outer_indices, quote_token
+from tltlc.grammar.mistakes.parse_failure import ParseFailure, outer_indices
 from tltlc.grammar.mistakes.rephrasing import operand_text, suggest_rewrite, text_of, without_brackets
 
 TokenRange = tuple[int, int]
@@ -68,7 +68,7 @@ def repeat_error(
     event, again = (happening(failure, part) for part in parts)
     if event.text != again.text or event.is_negated or (keyword == "avoid" and again.is_negated):
         return None
-    title, span = f"{quote_token(failure.tokens[word])} is not an operator", failure.tokens[word].span
+    title, span = failure.misplaced(failure.tokens[word]), failure.tokens[word].span
     if failure.lacks_fixed_clock(time):
         return failure.error("TLT0101", title, FIXED_CLOCK, span=span)
     operand, is_absent = event.text, keyword == "avoid" or again.is_negated

@@ -13,7 +13,7 @@ from tltlc.grammar.mistakes.english_rewrite import FIXED_CLOCK, Time
 from tltlc.grammar.mistakes.english_times import time_at
 from tltlc.grammar.mistakes.negated_answers import negated_answer_error
 from tltlc.grammar.mistakes.one_reading import QUANTIFIERS, TEMPORAL
-from tltlc.grammar.mistakes.parse_failure import INFIX, UNTILS, ParseFailure, outer_indices, quote_token
+from tltlc.grammar.mistakes.parse_failure import INFIX, UNTILS, ParseFailure, outer_indices
 from tltlc.grammar.mistakes.repeats import TokenRange, quantified_body, repeat_error
 from tltlc.grammar.mistakes.rephrasing import operand_text, suggest_rewrite, text_of
 
@@ -85,7 +85,7 @@ def response_in_english(failure: ParseFailure) -> Diagnostic | None:
         diagnostic = negated_answer_error(failure, *parts, time, response.word, may_be_bare=is_first)
     clause = _clause(failure, keyword, head, response)
     if diagnostic is None and clause is not None:
-        title = f"{quote_token(tokens[response.word])} is not an operator"
+        title = failure.misplaced(tokens[response.word])
         diagnostic = suggest_rewrite(failure, 0, stop, clause, title)
     return diagnostic or _unclear_error(failure, keyword, response)
 
@@ -167,7 +167,7 @@ def _unclear_error(failure: ParseFailure, keyword: str, response: _Response) -> 
             f"write `keep within {time} of b, a` if `a` must come within {time} of `b`, "
             f"`keep b implies not eventually within {time} a` if it must not"
         )
-    return failure.error("TLT0101", f"{quote_token(word)} is not an operator", help_, span=word.span)
+    return failure.error("TLT0101", failure.misplaced(word), help_, span=word.span)
 
 
 def _event_first(failure: ParseFailure, start: int, stop: int) -> _Response | None:

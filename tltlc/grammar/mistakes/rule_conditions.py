@@ -7,7 +7,7 @@ from tltlc.grammar.keywords import CONDITIONS
 from tltlc.grammar.mistakes.english_rewrite import clause_keyword
 from tltlc.grammar.mistakes.english_times import time_at
 from tltlc.grammar.mistakes.one_reading import QUANTIFIERS, has_always_before, has_token, is_of_one_step
-from tltlc.grammar.mistakes.parse_failure import INFIX, ParseFailure, quote_token
+from tltlc.grammar.mistakes.parse_failure import INFIX, ParseFailure
 from tltlc.grammar.mistakes.rephrasing import (
     formula_start,
     formula_stop,
@@ -46,7 +46,7 @@ def condition_behind_rule(failure: ParseFailure) -> Diagnostic | None:
         negated = text_of(failure, at + 2, stop)
     elif not (tokens[at + 1].type == "NAME" and stop == at + 2):
         negated = f"not ({condition})"
-    title, is_exception = f"{quote_token(tokens[at])} is not an operator", word == "unless"
+    title, is_exception = failure.misplaced(tokens[at]), word == "unless"
     first = f"{event} and {negated if is_exception else condition} implies {timed}{state}"
     second = f"{event} implies {timed}({state} {'or' if is_exception else 'and'} {condition})"
     readings = [first, second] if timed else [f"{event} implies {state} or {condition}" if is_exception else first]

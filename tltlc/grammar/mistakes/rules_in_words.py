@@ -11,7 +11,7 @@ from tltlc.grammar.mistakes.declared_names import declared_names
 from tltlc.grammar.mistakes.english_rewrite import FIXED_CLOCK, clause_keyword
 from tltlc.grammar.mistakes.english_times import time_at
 from tltlc.grammar.mistakes.one_reading import has_token, is_of_one_step
-from tltlc.grammar.mistakes.parse_failure import INFIX, ParseFailure, quote_token
+from tltlc.grammar.mistakes.parse_failure import INFIX, ParseFailure
 from tltlc.grammar.mistakes.repeats import begun_again, quantified_body
 from tltlc.grammar.mistakes.rephrasing import (
     formula_start,
@@ -54,7 +54,7 @@ def _only(failure: ParseFailure) -> Diagnostic | None:
     if tokens[at].text != "only" or word not in (*CONDITIONS, "after"):
         return None
     form = "{a} implies once {b}" if word == "after" else "{a} implies {b}"
-    title, sides = f"`only {word}` is not an operator", _sides(failure, at, at + 2)
+    title, sides = failure.misplaced(tokens[at]), _sides(failure, at, at + 2)
     if sides is not None and clause_keyword(failure) == "keep":
         text = form.format(a=sides[0], b=sides[1])
         return suggest_rewrite(failure, formula_start(failure), formula_stop(failure), text, title)
@@ -70,12 +70,12 @@ def _needs(failure: ParseFailure) -> Diagnostic | None:
     first, second = _sides(failure, at, at + 1) or ("a", "b")
     if second.startswith("once "):
         help_ = f"write `keep {first} implies {second}`"
-        return failure.error("TLT0101", f"{quote_token(failure.token)} is not an operator", help_)
+        return failure.error("TLT0101", failure.misplaced(failure.token), help_)
     help_ = (
         f"write `keep {first} implies {second}` if both must hold at the same step, "
         f"`keep {first} implies once {second}` if `{second}` may have held before"
     )
-    return failure.error("TLT0101", f"{quote_token(failure.token)} is not an operator", help_)
+    return failure.error("TLT0101", failure.misplaced(failure.token), help_)
 
 
 def _again(failure: ParseFailure) -> Diagnostic | None:
@@ -85,7 +85,7 @@ def _again(failure: ParseFailure) -> Diagnostic | None:
     if tokens[at].text != "again" or tokens[at + 1].text not in ("within", "in") or start is None or time is None:
         return None
     body, head = quantified_body(failure, tokens[0].text)
-    title, length = "`again` is not an operator", time[0].text
+    title, length = failure.misplaced(tokens[at]), time[0].text
     if failure.lacks_fixed_clock(length):
         return failure.error("TLT0101", title, FIXED_CLOCK)
     is_whole = clause_keyword(failure) == "avoid" and start == body and time[1] == len(tokens) - 1
@@ -103,7 +103,7 @@ def _for_the_next(failure: ParseFailure) -> Diagnostic | None:
     )
     if words != ["for", "the", "next"] or start is None or time is None:
         return None
-    title, length = "`for` is not an operator", time[0].text
+    title, length = failure.misplaced(tokens[at]), time[0].text
     operand = text_of(failure, start, at)
     help_ = f"write `always for {length} {operand}`, whose time begins at this step"
     return failure.error("TLT0101", title, FIXED_CLOCK if failure.lacks_fixed_clock(length) else help_)
@@ -134,7 +134,7 @@ def _never_compared(failure: ParseFailure) -> Diagnostic | None:
     if tokens[value].type != "NUMBER":
         return None
     text = f"avoid {operand_text(failure, 1, at)} {COMPARISON_WORDS[phrase]} {operand_text(failure, value, stop)}"
-    return suggest_rewrite(failure, 0, stop, text, "`never` is not an operator")
+    return suggest_rewrite(failure, 0, stop, text, failure.misplaced(tokens[at]))
 
 
 def _changed(failure: ParseFailure) -> Diagnostic | None:
@@ -147,14 +147,14 @@ def _changed(failure: ParseFailure) -> Diagnostic | None:
     if after[0].text in _LIMITS:
         value = text_of(failure, start, at)
         help_ = f"compare the value itself: `{value} {COMPARISON_WORDS[after[0].text,]} {tokens[at + 2].text}`"
-        return failure.error("TLT0101", f"{quote_token(tokens[at])} is not an operator", help_)
+        return failure.error("TLT0101", failure.misplaced(tokens[at]), help_)
     return _change_error(failure, start, at, at)
 
 
 def _change_error(failure: ParseFailure, start: int, stop: int, verb: int) -> Diagnostic:
     """Return the error for a verb such as `falls`, and how far the value from ``start`` to ``stop`` changes."""
     tokens, operand = failure.tokens, operand_text(failure, start, stop)
-    title = f"{quote_token(tokens[verb])} is not an operator"
+    title = failure.misplaced(tokens[verb])
     if any(token.text in ("within", "in") for token in tokens[verb:]):
         help_ = f"let the game supply how much `{operand}` has changed in that time"
         return failure.error("TLT0101", title, help_, span=tokens[verb].span)

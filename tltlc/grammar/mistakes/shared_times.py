@@ -8,7 +8,7 @@ from itertools import pairwise
 from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.grammar.mistakes.english_rewrite import FIXED_CLOCK, Time, clause_keyword
 from tltlc.grammar.mistakes.one_reading import QUANTIFIERS, has_token, is_of_one_step
-from tltlc.grammar.mistakes.parse_failure import CLOSING, INFIX, OPENING, ParseFailure, outer_indices, quote_token
+from tltlc.grammar.mistakes.parse_failure import CLOSING, INFIX, OPENING, ParseFailure, outer_indices
 from tltlc.grammar.mistakes.repeats import TokenRange, begun_again
 from tltlc.grammar.mistakes.rephrasing import operand_text, suggest_rewrite, text_of, without_brackets
 
@@ -45,7 +45,7 @@ def shared_time_error(failure: ParseFailure, at: int, operand: TokenRange, time:
         help_ = f"write `require ({' until '.join(texts)}) and eventually within {t} {texts[1]}`"
     else:
         return None
-    title = f"{quote_token(word)} is not an operator"
+    title = failure.misplaced(word)
     return failure.error(
         "TLT0101", title, FIXED_CLOCK if failure.lacks_fixed_clock(time.text) else help_, span=word.span
     )

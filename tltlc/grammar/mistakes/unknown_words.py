@@ -29,7 +29,7 @@ _GENERAL: Final[tuple[Rule, ...]] = (plain_english, comma, names_side_by_side, v
 """Rules whose helps have letters in place of the words of the clause, where the rules do not understand them."""
 _EXPLAINED: Final = frozenset((*FORMS, *TIMES, *CONDITIONS, "a", "an", "the"))
 """The words of English of which an error says how to write them, and those that mean nothing."""
-_WHERE: Final = '; "How do I say…?" in docs/guides/phrases.md lists what people want to say, and how to write it'
+_WHERE: Final = '"How do I say…?" in docs/guides/phrases.md lists what people want to say, and how to write it'
 
 
 def with_unknown_word(failure: ParseFailure, error: Diagnostic, helped: Diagnostic, rule: Rule | None) -> Diagnostic:
@@ -50,10 +50,15 @@ def with_unknown_word(failure: ParseFailure, error: Diagnostic, helped: Diagnost
         return helped
     word, token = _unknown_word(failure), failure.token
     if word is not None:
-        return replace(helped, help=f"the language does not know the word `{word.text}`{_WHERE}")
+        return replace(helped, help=_with_list(failure.misplaced(word), helped))
     if rule is None and token.type == "NAME" and token.text in load().soft and failure.wants_operator:
-        return replace(helped, help=f"`{token.text}` cannot stand here{_WHERE}")
+        return replace(helped, help=_with_list(failure.misplaced(token), helped))
     return helped
+
+
+def _with_list(reason: str, error: Diagnostic) -> str:
+    """Return a help that gives a reason, unless the title does so, and says where the list of phrases is."""
+    return _WHERE if reason == error.title else f"{reason}; {_WHERE}"
 
 
 def _unknown_word(failure: ParseFailure) -> Token | None:
