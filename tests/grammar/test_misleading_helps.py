@@ -246,4 +246,27 @@ def test_a_help_in_the_words_of_the_file_stays() -> None:
 
 
 def test_counting_stops_at_a_maximum() -> None:
-    assert (error_of("keep times(hit) >= times(seen)").help or "").endswith(": counting stops at the maximum")
+    assert error_of("keep times(hit) >= 2 * times(seen)").help == (
+        "write the greatest value that matters, e.g. `times(seen, 10)`: counting stops at the maximum"
+    )
+
+
+def test_both_sides_of_a_comparison_get_a_maximum() -> None:
+    assert error_of("keep time_holding(hidden) >= time_holding(seen)").help == (
+        "write the greatest value that matters on both sides, e.g. "
+        "`time_holding(hidden, 60 s) >= time_holding(seen, 60 s)`: two times at the maximum are equal"
+    )
+
+
+@pytest.mark.parametrize(
+    ("clause", "help_"),
+    [
+        ("keep hidden unless alarm", "write `keep hidden or alarm`"),
+        (
+            "keep time_holding(hidden) >= 5 steps implies not seen",
+            "write `keep time_holding(hidden) >= 0.5 s implies not seen`",
+        ),
+    ],
+)
+def test_a_help_shows_the_whole_clause(clause: str, help_: str) -> None:
+    assert (error_of(clause).help or "").startswith(help_)

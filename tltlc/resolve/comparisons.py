@@ -15,8 +15,8 @@ from tltlc.resolve import units
 from tltlc.resolve.dimensions import same_dimension
 from tltlc.resolve.margins import robustness
 from tltlc.resolve.problem import ResolutionError, problem
-from tltlc.resolve.quantities import quantity
-from tltlc.resolve.recall import check_closed, saturate, too_small_error
+from tltlc.resolve.quantities import check_steps, quantity
+from tltlc.resolve.recall import check_closed, check_closed_pair, saturate, too_small_error
 from tltlc.resolve.values import PRODUCT, Env, Quantity, apply, range_text
 
 _MIRRORED = {"<": ">", "<=": ">=", ">": "<", ">=": "<="}
@@ -39,9 +39,12 @@ def comparison(expr: BinaryExpr, env: Env) -> Formula:
     end (TLT0311), or if the arithmetic of a side may overflow (TLT0319).
     """
     levels = env.context.levels
+    check_steps(expr.left, expr.right, env)
+    check_steps(expr.right, expr.left, env)
     left, right = quantity(expr.left, env, levels), quantity(expr.right, env, levels)
     same_dimension(left, right, expr.right, env)
     left, right = saturate(left, right, expr.right, env), saturate(right, left, expr.left, env)
+    check_closed_pair(left, right, expr, env)
     left, right = check_closed(left, expr.left, env), check_closed(right, expr.right, env)
     op = expr.op
     if left.is_constant and not right.is_constant:

@@ -22,7 +22,7 @@ from tltlc.resolve.kinds import kind_of
 from tltlc.resolve.margins import robustness
 from tltlc.resolve.problem import ResolutionError, problem
 from tltlc.resolve.quantities import quantity
-from tltlc.resolve.recall import check_closed, saturate, too_small_error
+from tltlc.resolve.recall import check_closed, check_closed_pair, saturate, too_small_error
 from tltlc.resolve.registers import COUNTS
 from tltlc.resolve.values import PRODUCT, Env, Quantity, apply, constant, number_text, range_text
 
@@ -74,6 +74,7 @@ def distance_of_sides(expr: BinaryExpr, env: Env) -> tuple[Quantity, Quantity, Q
         if time.recall is not None and not time.recall.is_count:
             raise _time_error(time, other, expr, env)
     left, right = saturate(left, right, expr.right, env), saturate(right, left, expr.left, env)
+    check_closed_pair(left, right, expr, env)
     left, right = check_closed(left, expr.left, env), check_closed(right, expr.right, env)
     at = expr.right
     if left.is_constant and not right.is_constant:

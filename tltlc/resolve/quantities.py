@@ -6,7 +6,7 @@ from math import isinf
 from typing import cast
 
 from tltlc.core.record import replace
-from tltlc.diagnostics.diagnostic import Fix, bracket_edits
+from tltlc.diagnostics.diagnostic import Fix, bracket_edits, replacement_fix
 from tltlc.expression.tree import Condition, ConditionOp, Const, When
 from tltlc.expression.tree import depth as depth_of
 from tltlc.grammar import tree
@@ -149,13 +149,31 @@ def _number(expr: NumberExpr, env: Env) -> Quantity:
 
 def _in_seconds(steps: NumberExpr, env: Env) -> str:
     """Return how long a number of steps takes, for a help; "" if the clock does not say it."""
+    seconds, is_exact = _seconds(steps, env)
+    verb, about = "is" if steps.value == 1 else "are", "" if is_exact else "about "
+    text = f"`{number_text(steps.value)} {steps.unit}` {verb} {about}`{seconds}` with this clock"
+    return f": {text}" if seconds else ""
+
+
+def _seconds(steps: NumberExpr, env: Env) -> tuple[str, bool]:
+    """Return how long a number of steps takes, "" if the clock does not say it, and whether the text is exact."""
     clock_s = env.context.clock_s
     if not clock_s:
-        return ""
+        return "", False
     seconds = f"{steps.value * clock_s:.6g}"
-    about = "" if abs(float(seconds) - steps.value * clock_s) < 1e-12 else "about "
-    verb = "is" if steps.value == 1 else "are"
-    return f": `{number_text(steps.value)} {steps.unit}` {verb} {about}`{seconds} s` with this clock"
+    return f"{seconds} s", abs(float(seconds) - steps.value * clock_s) < 1e-12
+
+
+def check_steps(number: Expr, other: Expr, env: Env) -> None:
+    """Raise ResolutionError (TLT0304) with a fix if a time is compared with a number of steps of known length."""
+    if not isinstance(number, NumberExpr) or units.in_si(number.value, number.unit) is not None:
+        return
+    seconds, is_exact = _seconds(number, env)
+    if is_exact and quantity(other, env, env.context.levels).dimension == units.TYPES["time"]:
+        title, source = "a time is compared with seconds, not with steps", env.scope.source
+        advice = f"write `{seconds}`{_in_seconds(number, env)}"
+        fixes = (replacement_fix(source, number.span, seconds),)
+        raise problem("TLT0304", title, source, number.span, advice=advice, fixes=fixes)
 
 
 def _resolve_name(expr: NameExpr | CallExpr, env: Env, depth: int) -> Quantity:

@@ -8,7 +8,7 @@ from typing import Final
 from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import Label, replacement_fix
 from tltlc.expression.tree import Const, Expression, Op
-from tltlc.grammar.tree import Expr
+from tltlc.grammar.tree import BinaryExpr, Expr
 from tltlc.resolve import registers, units
 from tltlc.resolve.counts_within import MOST_BEGINNINGS
 from tltlc.resolve.problem import ResolutionError, problem
@@ -77,16 +77,35 @@ def check_closed(value: Quantity, expr: Expr, env: Env) -> Quantity:
     if env.symbolic or not is_open(value):
         return value
     assert value.recall is not None, "an open quantity"
-    example = "10" if value.recall.is_count else "60 s"
-    fixed = f"{value.text[:-1]}, {example})"
     stops = f"{'counting' if value.recall.is_count else 'the time'} stops at the maximum"
-    raise problem(
+    raise _open_error(value, expr, env, f"write the greatest value that matters, e.g. `{_closed_text(value)}`: {stops}")
+
+
+def check_closed_pair(left: Quantity, right: Quantity, expr: BinaryExpr, env: Env) -> None:
+    """Raise ResolutionError (TLT0321) if both sides of a comparison are recalled and have no maximum."""
+    if env.symbolic or not (is_open(left) and is_open(right)):
+        return
+    assert left.recall is not None, "an open quantity"
+    noun, text = "counts" if left.recall.is_count else "times", f"{_closed_text(left)} {expr.op} {_closed_text(right)}"
+    advice = f"write the greatest value that matters on both sides, e.g. `{text}`: two {noun} at the maximum are equal"
+    raise _open_error(left, expr.left, env, advice)
+
+
+def _closed_text(value: Quantity) -> str:
+    """Return the text of a recalled quantity with an example of a maximum."""
+    example = "10" if value.recall is not None and value.recall.is_count else "60 s"
+    return f"{value.text[:-1]}, {example})"
+
+
+def _open_error(value: Quantity, expr: Expr, env: Env, advice: str) -> ResolutionError:
+    """Return the error for a recalled quantity that needs a maximum."""
+    return problem(
         "TLT0321",
         f"`{value.text}` needs a maximum here",
         env.scope.source,
         expr.span,
         "only a comparison with a number finds one by itself",
-        advice=f"write the greatest value that matters, e.g. `{fixed}`: {stops}",
+        advice=advice,
     )
 
 

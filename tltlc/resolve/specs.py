@@ -14,6 +14,7 @@ from tltlc.expression.tree import ParamValue as ParamNode
 from tltlc.expression.tree import SignalValue as SignalNode
 from tltlc.grammar.tree import BinaryExpr, Clause, Expr, NameExpr, NumberExpr, SpecDecl
 from tltlc.grammar.walk import conjuncts
+from tltlc.grammar.whole_clauses import showing_clause
 from tltlc.logic.formula import Formula, always, and_, bound_of, eventually, not_
 from tltlc.logic.text.one_line import OneLinePrinter
 from tltlc.logic.text.style import STYLES
@@ -138,10 +139,15 @@ def _atoms(names: Iterable[str], context: Context) -> tuple[Atom, ...]:
 
 
 def _in_whole(diagnostic: Diagnostic | None, clause: Clause, source: SourceFile) -> Diagnostic | None:
-    """Return an error with a fix for the whole clause, if one for the part in error would lead to the next error."""
+    """Return an error with a fix for the whole clause, if one for the part in error would lead to the next error.
+
+    Its help shows the whole clause, too.
+    """
     from tltlc.grammar.english.clauses import with_whole_clause
 
-    return None if diagnostic is None else with_whole_clause(diagnostic, source, clause.span)
+    if diagnostic is None:
+        return None
+    return showing_clause(with_whole_clause(diagnostic, source, clause.span), source, clause.span)
 
 
 def _conjuncts(clause: Clause, env: Env) -> list[Conjunct]:

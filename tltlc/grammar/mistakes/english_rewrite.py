@@ -9,11 +9,11 @@ from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.grammar.mistakes.english_forms import CONDITION, FORMS, HOLDING, SEQUENCE, TIMED, Form
 from tltlc.grammar.mistakes.one_reading import effective_clause, has_always_before, is_clear_here
 from tltlc.grammar.mistakes.parse_failure import ParseFailure, outer_indices, quote_token
-from tltlc.grammar.mistakes.rephrasing import formula_start, suggest_rewrite
+from tltlc.grammar.mistakes.rephrasing import formula_start, suggest_rewrite, text_of
 
 _REASONS: Final = {
-    ("if", "reach"): " for both at the same step, or `{b} then {a}` for one after the other",
-    ("when", "reach"): " for both at the same step, or `{b} then {a}` for one after the other",
+    ("if", "reach"): " for both at the same step, or `{head}{b} then {a}` for one after the other",
+    ("when", "reach"): " for both at the same step, or `{head}{b} then {a}` for one after the other",
     ("while", "reach"): " for both at the same step; to require `{b}` at every step, write a clause `keep {b}`",
     ("for", "reach"): "; `always for` requires nothing after the end of play, so `next after` requires the last step",
 }
@@ -49,7 +49,9 @@ def rewrite_error(
         reason = (form != HOLDING and (word.text == "for" or not is_timed) and _REASONS.get((word.text, kind))) or (
             (_WHERE if _is_of_every_step(failure, at) else _ONCE) if form == CONDITION[""] else ""
         )
-        diagnostic = suggest_rewrite(failure, start, stop, text, title, reason.format(a=parts.a, b=parts.b), code)
+        head = f"{text_of(failure, 0, start)} " if start else ""
+        reason = reason.format(a=parts.a, b=parts.b, head=head)
+        diagnostic = suggest_rewrite(failure, start, stop, text, title, reason, code)
         if diagnostic:
             return diagnostic
     return failure.error(code, title, _general_help(failure, at, form, time), span=word.span)

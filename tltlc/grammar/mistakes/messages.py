@@ -46,14 +46,15 @@ from tltlc.grammar.mistakes.prohibitions import never_joined
 from tltlc.grammar.mistakes.punctuation import PUNCTUATION, missing_comma
 from tltlc.grammar.mistakes.quantifier_words import quantifier_in_words
 from tltlc.grammar.mistakes.renaming import word_of_the_past
-from tltlc.grammar.mistakes.rephrasing import formula_stop, text_of
+from tltlc.grammar.mistakes.rephrasing import formula_stop, span_of, text_of
 from tltlc.grammar.mistakes.responses import colon_after_event, response_in_english
 from tltlc.grammar.mistakes.rules_in_words import rule_in_words
 from tltlc.grammar.mistakes.sentences.help import sentence_help
-from tltlc.grammar.mistakes.sentences.reading import ReadAgain
+from tltlc.grammar.mistakes.sentences.reading import ReadAgain, is_mended
 from tltlc.grammar.mistakes.unknown_signs import unknown_sign
 from tltlc.grammar.mistakes.unknown_words import with_unknown_word
 from tltlc.grammar.tables import load
+from tltlc.grammar.whole_clauses import showing_clause
 
 _NEXTS: Final = {"NEXT", "WEAK_NEXT"}
 _BOUNDED: Final = BEFORE_ONE - {"NOT"}
@@ -105,7 +106,11 @@ def _diagnostic(
     helped = sentence_help(
         failure, diagnostic, is_explained=is_explained, read_again=read_again, reads_sentences=reads_sentences
     )
-    return with_unknown_word(failure, diagnostic, helped, rule)
+    known = with_unknown_word(failure, diagnostic, helped, rule)
+    is_last = start == "clause" and read_again is not None and len(tokens) > 1
+    if is_last and known.fixes and is_mended(failure, known.fixes[0]):
+        return showing_clause(known, source, span_of(tokens[:-1]))
+    return known
 
 
 def _at_fix(diagnostic: Diagnostic) -> Diagnostic:
