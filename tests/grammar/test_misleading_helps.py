@@ -270,3 +270,16 @@ def test_both_sides_of_a_comparison_get_a_maximum() -> None:
 )
 def test_a_help_shows_the_whole_clause(clause: str, help_: str) -> None:
     assert (error_of(clause).help or "").startswith(help_)
+
+
+def test_a_sentence_that_is_not_understood_gets_the_words_that_begin_a_rule() -> None:
+    (first, second, third) = (error_of("hidden glimmers sometimes like alarm").help or "").splitlines()
+    assert "`keep`" in first
+    assert "`avoid`" in first
+    assert "`reach`" in second
+    assert "`require`" in second
+    assert "docs/guides/phrases.md" in third
+
+
+def test_a_line_like_a_setting_gets_all_words_that_begin_a_clause() -> None:
+    assert (error_of("difficulty hard").help or "").startswith("use one of `reach`, `keep`, ")

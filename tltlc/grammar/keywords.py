@@ -43,6 +43,14 @@ CASES: Final = "write cases as `when x > 3: 1 otherwise: -1`"
 OPERATORS: Final = {"reach": "eventually", "keep": "always", "avoid": "always not", "require": ""}
 """Maps clause keywords to the operators that mean the same inside a formula; `require` needs no operator."""
 
+PHRASE_LIST: Final = '"How do I say…?" in docs/guides/phrases.md lists what people want to say, and how to write it'
+RULE_WORDS: Final = (
+    "a rule begins with `keep` for what must hold at every step, `avoid` for what must never hold,\n"
+    "`reach` for what must hold at some step, or `require` for what must come before something else\n"
+    f"{PHRASE_LIST}"
+)
+"""The help for a sentence that no rule and no grammar understands."""
+
 CONDITIONS: Final = ("if", "when", "whenever", "while")
 """English words that begin a condition."""
 

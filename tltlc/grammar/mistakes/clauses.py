@@ -15,6 +15,7 @@ from tltlc.grammar.keywords import (
     DECLARATIONS,
     JUDGE,
     OPERATORS,
+    RULE_WORDS,
     SYNONYMS,
     TEST_ITEMS,
     UNITS_ELSEWHERE,
@@ -74,6 +75,8 @@ _MARKS: Final = frozenset("-–—*+•·.:)")
 _LONGEST_LIMIT: Final = 7
 _FEW: Final = 4
 """A line that has a time and at most this many tokens probably says nothing but the time."""
+_SETTING: Final = 2
+"""The most tokens of a line that is rather a setting, such as `difficulty hard`, than a sentence."""
 _TIMES: Final = frozenset(("step", "steps", "ms", "s", "min", "h"))
 """The units of a limit."""
 _OF_OPERATOR: Final = {"EVENTUALLY": "reach", "ALWAYS": "keep", "NOT": "avoid"}
@@ -100,8 +103,9 @@ def unknown_keyword(failure: ParseFailure) -> Diagnostic | None:
     if keyword is None and token.type == "NAME":
         keyword = closest_word(token.text, tuple(keywords))
     message = f"did you mean `{keyword}`?" if keyword else ""
-    listed = ", ".join(f"`{word}`" for word in keywords)
-    return failure.error("TLT0107", title, None if keyword else f"use one of {listed}", message, write=keyword)
+    is_sentence = failure.start == "clause" and len(failure.tokens) - 1 > _SETTING
+    help_ = RULE_WORDS if is_sentence else f"use one of {', '.join(f'`{word}`' for word in keywords)}"
+    return failure.error("TLT0107", title, None if keyword else help_, message, write=keyword)
 
 
 def _is_clear_keyword(failure: ParseFailure, keyword: str) -> bool:

@@ -7,7 +7,7 @@ from typing import Final
 
 from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import Diagnostic
-from tltlc.grammar.keywords import CLAUSES, CONDITIONS, UNITS_ELSEWHERE
+from tltlc.grammar.keywords import CLAUSES, CONDITIONS, PHRASE_LIST, UNITS_ELSEWHERE
 from tltlc.grammar.lexer import Token, tokenize
 from tltlc.grammar.mistakes.clauses import unknown_keyword
 from tltlc.grammar.mistakes.declared_names import declared_names
@@ -29,7 +29,6 @@ _GENERAL: Final[tuple[Rule, ...]] = (plain_english, comma, names_side_by_side, v
 """Rules whose helps have letters in place of the words of the clause, where the rules do not understand them."""
 _EXPLAINED: Final = frozenset((*FORMS, *TIMES, *CONDITIONS, "a", "an", "the"))
 """The words of English of which an error says how to write them, and those that mean nothing."""
-_WHERE: Final = '"How do I say…?" in docs/guides/phrases.md lists what people want to say, and how to write it'
 
 
 def with_unknown_word(failure: ParseFailure, error: Diagnostic, helped: Diagnostic, rule: Rule | None) -> Diagnostic:
@@ -58,7 +57,7 @@ def with_unknown_word(failure: ParseFailure, error: Diagnostic, helped: Diagnost
 
 def _with_list(reason: str, error: Diagnostic) -> str:
     """Return a help that gives a reason, unless the title does so, and says where the list of phrases is."""
-    return _WHERE if reason == error.title else f"{reason}; {_WHERE}"
+    return PHRASE_LIST if reason == error.title else f"{reason}; {PHRASE_LIST}"
 
 
 def _unknown_word(failure: ParseFailure) -> Token | None:
