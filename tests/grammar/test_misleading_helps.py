@@ -210,7 +210,7 @@ def test_a_word_of_english_behind_a_number_is_no_unit(word: str) -> None:
 
 
 def test_another_word_behind_a_number_is_no_unit() -> None:
-    assert error_of("keep speed <= 3 feet").title == "`feet` is not a unit"
+    assert error_of("keep speed <= 3 feet").title == "the language has no unit `feet`"
 
 
 @pytest.mark.parametrize(

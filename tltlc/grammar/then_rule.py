@@ -113,7 +113,7 @@ def _check_operand(
     else:
         word = source.slice(leading.op_span)
         span = leading.op_span
-        title = f"a bare `{word}` cannot follow `then`" if last else f"`then` cannot follow a bare `{word}`"
+        title = f"`{word}` {'after' if last else 'before'} `then` needs brackets"
         help_ = _readings_help(source, operand, neighbour, last, then)
         if leading is operand and leading.op == "F" and leading.bound is None:
             before, after = (neighbour, leading.operand) if last else (leading.operand, neighbour)

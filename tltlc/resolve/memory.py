@@ -261,9 +261,11 @@ def _of_formula(expr: CallExpr, env: Env) -> Quantity:
     limit = expr.arguments[-1].value
     maximum = number(limit, dimension, env, f"the maximum of `{expr.name}`")
     if maximum <= 0 or isinf(maximum) or (not is_time and maximum != int(maximum)):
-        wanted = "a time above 0, e.g. `60 s`" if is_time else "a whole number above 0"
-        title = "this maximum cannot be reached" if maximum <= 0 else "this is no maximum"
-        raise problem("TLT0303", title, env.scope.source, limit.span, advice=f"write {wanted}")
+        wanted = "a time above 0" if is_time else "a whole number above 0"
+        title = "this maximum cannot be reached" if maximum <= 0 else f"a maximum of `{expr.name}` is {wanted}"
+        raise problem(
+            "TLT0303", title, env.scope.source, limit.span, advice=f"write {wanted}{', e.g. `60 s`' if is_time else ''}"
+        )
     text = f"{name[:-1]}, {number_text(maximum)})"
     return up_to(open_value, maximum, limit, env, text, Label(env.scope.source, limit.span))
 

@@ -81,7 +81,7 @@ def _step(
             given = [f"`{atom.name}`" for atom in spec.atoms if atom.name not in following]
             known = ", ".join(given) or "no atoms"
             verb = "has" if not given else "has the atoms" if len(given) > 1 else "has only the atom"
-            title = f"`{name}` is not an atom of the spec `{spec.name}`"
+            title = f"the spec `{spec.name}` does not use `{name}`"
             advice = f"the spec {verb} {known}"
             if any(signal.name == name for signal in spec.signals):
                 advice = f"predicates read it: write `{name} = {str(holds).lower()}`"

@@ -50,7 +50,8 @@ def equality(failure: ParseFailure) -> Diagnostic | None:
     is_expectation = failure.tokens[0].text == "expect"
     if sign not in _EQUAL or not (failure.token.type != "EQUAL" or failure.wants_operator or is_expectation):
         return None
-    title = f"`{sign}` is not a comparison here" if failure.token.type != "EQUAL" else "`=` is not a comparison"
+    is_known = sign in ("==", "!=")
+    title = f"`{sign}` compares whole numbers only" if is_known else f"the language has no comparison `{sign}`"
     if is_expectation:
         return failure.error("TLT0110", title, "compare with `<`, `<=`, `>` or `>=`")
     start, stop = value_end(failure.tokens, at, -1), value_end(failure.tokens, at, 1)

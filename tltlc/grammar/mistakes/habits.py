@@ -136,7 +136,7 @@ def foreign_unit(failure: ParseFailure) -> Diagnostic | None:
         return None
     if token.text.isupper() and token.text.lower() in load().words:
         return None
-    title = f"{quote_token(token)} is not a unit"
+    title = f"the language has no unit {quote_token(token)}"
     known = UNITS_ELSEWHERE.get(token.text.lower())
     compared = operand_start(failure.tokens, failure.stop.index - 2)
     is_ratio = compared is not None and declared_names(failure.source).type_of(failure.tokens[compared].text) == "ratio"

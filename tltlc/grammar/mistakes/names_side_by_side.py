@@ -36,7 +36,7 @@ def names_side_by_side(failure: ParseFailure) -> Diagnostic | None:
     if before.text == "after" and before.text not in declared_names(failure.source).names:
         return failure.error("TLT0101", failure.misplaced(before), _AFTER, span=before.span)
     help_ = f"write `{text}` if `{before.text}` applies to `{token.text}`; otherwise join them with `and` or `then`"
-    title = f"{quote_token(before)} and {quote_token(token)} are not joined"
+    title = f"a word is missing between {quote_token(before)} and {quote_token(token)}"
     if not takes_arguments:
         help_ = "join them with `and` or `then`"
     write = text if takes_arguments else None

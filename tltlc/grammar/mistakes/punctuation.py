@@ -291,15 +291,15 @@ def invalid_name(failure: ParseFailure) -> Diagnostic | None:
     if before is None or not after:
         return None
     joined = are_adjacent(token, after[0]) and (NAME.fullmatch(after[0].text) or after[0].type == "NUMBER")
-    rule = "names consist of ASCII letters, digits and `_`"
+    rule, title = "names consist of ASCII letters, digits and `_`", "a name cannot contain `-`"
     if token.type == "NUMBER" and "NUMBER" not in failure.allowed_terminals and "NAME" in failure.allowed_terminals:
         text = f"_{token.text}{after[0].text}" if joined else f"{before.text}_{token.text}"
         span, rule = span_of([token, after[0]] if joined else [token]), "a name begins with a letter or `_`"
+        title = "a name cannot begin with a digit"
     elif token.text == "-" and before.type == "NAME" and are_adjacent(before, token) and joined:
         span, text = span_of([before, after[0]]), f"{before.text}_{after[0].text}"
     else:
         return None
-    title = f"`{failure.source.slice(span)}` is not a name"
     return failure.error("TLT0104", title, f"{rule}: write `{text}`", span=span, write=text)
 
 

@@ -30,7 +30,7 @@ def quantifier_in_words(failure: ParseFailure) -> Diagnostic | None:
             if texts != phrase or variable + 2 >= len(tokens) or tokens[variable + 1].text != "in":
                 continue
             written = " ".join(phrase)
-            title = f"`{written}` is not a quantifier"
+            title = f"the language has no words `{written}`"
             if start > formula_start(failure) and tokens[start - 1].type not in {*INFIX, "NOT", "LPAR"}:
                 return _after_its_formula(failure, start, variable, word, title)
             head = text_of(failure, variable, variable + 3)

@@ -9,7 +9,7 @@ from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.grammar.keywords import CASES
 from tltlc.grammar.lexer import BAD
 from tltlc.grammar.mistakes.equalities import equality
-from tltlc.grammar.mistakes.parse_failure import ParseFailure, quote_token
+from tltlc.grammar.mistakes.parse_failure import ParseFailure
 from tltlc.grammar.mistakes.punctuation import leave_out_help, text_without_quotes
 from tltlc.grammar.mistakes.rephrasing import suggest_rewrite
 from tltlc.grammar.tables import load
@@ -73,12 +73,13 @@ def _invalid_word(failure: ParseFailure) -> Diagnostic:
     base = text.rstrip(_SUPERSCRIPTS)
     if base != text and (not base or (base.isascii() and base.isidentifier())):
         power = f"{base}^{normalize('NFKC', text[len(base) :])}"
-        title = f"{quote_token(failure.token)} is not a name" if base else f"`{text}` means nothing here"
+        title = f"a name cannot contain `{text[len(base) :]}`" if base else f"`{text}` means nothing here"
         return failure.error("TLT0104", title, f"for a power write `{power}`", write=power)
     plain = "".join(character for character in normalize("NFKD", text) if character.isascii())
     write = plain if plain.isidentifier() and len(plain) == len(text) else None
     help_ = "names consist of ASCII letters, digits and `_`" + (f": write `{write}`" if write else "")
-    return failure.error("TLT0104", f"{quote_token(failure.token)} is not a name", help_, write=write)
+    foreign = next((character for character in text if not character.isascii()), text)
+    return failure.error("TLT0104", f"a name cannot contain `{foreign}`", help_, write=write)
 
 
 def _foreign_quotes(failure: ParseFailure) -> Diagnostic:
