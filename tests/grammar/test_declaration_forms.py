@@ -195,7 +195,7 @@ def test_the_clauses_are_checked_with_the_values_of_the_enum() -> None:
     _, equal, unknown = diagnostics(
         "enum Engine { Ok, Hot }\nsignal engine: Engine\nspec s { reach engine == Hot avoid engine is Cold }"
     )
-    assert equal.help == "write `engine is Hot`"
+    assert equal.help == "write `reach engine is Hot`"
     assert unknown.help == "its values are `Ok`, `Hot`"
 
 
@@ -228,7 +228,7 @@ def test_the_clauses_are_checked_with_the_declarations_that_are_meant() -> None:
     )
     *declared, clause = diagnostics(text)
     assert [error.code for error in declared] == ["TLT0101", "TLT0107", "TLT0107", "TLT0107"]
-    assert clause.help == "write `alert is alarmed`"
+    assert clause.help == "write `avoid alert is alarmed`"
 
 
 def test_a_comment_inside_a_declaration_is_not_lost() -> None:

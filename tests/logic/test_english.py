@@ -53,7 +53,7 @@ EXAMPLES = {
     "G !F(a & X F b)": "Whenever a, avoid b from the next step on.",
     "!F[0,3] a": "Avoid a for 4 steps.",
     "!G[0,3] !a": "Reach a within 3 steps.",
-    "F !G[0,3] a": "Reach a step from which on to reach not a within 3 steps.",
+    "F !G[0,3] a": "Reach a step that begins this: reach not a within 3 steps.",
     "X F[0,3] a": "Reach a within the next 4 steps.",
     "N G[0,3] a": "Keep a for the next 4 steps.",
     "X G[0,3] a": "At the next step, keep a for 4 steps.",
@@ -82,7 +82,7 @@ EXAMPLES = {
     "a | X(a | X a)": "Reach a within 2 steps.",
     "a & N(a & N a)": "Keep a for 3 steps.",
     "a & X b | X(a & X b)": (
-        "Reach within 1 step a step from which on to (have a at that step, and have b at the next step)."
+        "Reach within 1 step a step that begins this: (have a at that step, and have b at the next step)."
     ),
     "X X X a": "Have a after 3 steps.",
     "N a": "Have a at the next step, if there is one.",
@@ -151,8 +151,31 @@ def test_formulas_print_as_known_sentences(formula: str, sentence: str) -> None:
 def test_negated_comparisons_are_reversed_and_need_no_brackets() -> None:
     low, high = f.not_(f.atom(ComparisonName("fuel", ">", "5"))), f.atom(ComparisonName("near(a)", "<", "3"))
     assert english_text(f.always(f.or_(low, high))) == "Keep fuel <= 5 or near(a) < 3 throughout."
-    assert english_text(f.always(low)) == "Avoid fuel > 5 throughout."
+    assert english_text(f.always(low)) == "Keep fuel <= 5 throughout."
     assert english_text(f.eventually(f.and_(f.not_(high), f.atom("p")))) == "Reach near(a) >= 3 and p."
+
+
+@pytest.mark.parametrize(
+    ("name", "sentence"),
+    [
+        (ComparisonName("previous(fuel)", ">", "fuel"), "Keep fuel < previous(fuel) throughout."),
+        (ComparisonName("distance(guard2)", ">", "2"), "Keep distance(guard2) > 2 throughout."),
+        (ComparisonName("distance(exit)", "<", "close"), "Keep distance(exit) < close throughout."),
+        (ComparisonName("previous(near(a))", ">", "near(a)"), "Keep near(a) < previous(near(a)) throughout."),
+        (ComparisonName("fuel", "<", "coins"), "Keep fuel < coins throughout."),
+    ],
+)
+def test_a_signal_stands_before_a_value_of_its_own(name: ComparisonName, sentence: str) -> None:
+    assert english_text(f.always(f.atom(name))) == sentence
+
+
+def test_clauses_that_nest_too_deeply_have_no_signs() -> None:
+    text = "c"
+    for number in range(9):
+        text = f"a & X(!{'bd'[number % 2]} U ({text}))"
+    sentence = english_text(read_formula(text))
+    assert "satisfy" in sentence
+    assert not set(sentence) & set("!&|")
 
 
 @pytest.mark.parametrize(("formula", "sentence"), ENDLESS.items())

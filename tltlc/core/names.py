@@ -9,6 +9,7 @@ _BASE: Final = re.compile(r"[^\W\d][\w.]*\(")
 _BRACKETS: Final = {"(": 1, ")": -1}
 _SIGNS: Final = re.compile(" (<|>|==) ")
 _CHOICE: Final = re.compile(r"([^\W\d][\w.]*(?:\([^()]*\))?) (is) ([^\W\d]\w*)")
+_MIRRORED: Final = {"<": ">", ">": "<"}
 _OPPOSITES: Final = {"<": ">=", ">": "<=", "==": "!=", "is": "is not"}
 
 
@@ -39,6 +40,19 @@ class ComparisonName(str):
     def opposite_operator(self) -> str:
         """The operator of :attr:`opposite`."""
         return _OPPOSITES[self.operator]
+
+    @property
+    def signal_first(self) -> ComparisonName:
+        """The same comparison, with the signal first that is compared with a value of its own.
+
+        ``coins < previous(coins)`` for ``previous(coins) > coins``. Other comparisons stay as they are.
+        """
+        signal = self.right
+        is_name = signal.endswith(")") or signal.isidentifier()
+        is_own = is_name and re.search(rf"(?<![\w.]){re.escape(signal)}(?![\w.(])", self.left) is not None
+        if self.operator not in _MIRRORED or not is_own:
+            return self
+        return ComparisonName(self.right, _MIRRORED[self.operator], self.left)
 
     def __getnewargs__(self) -> tuple[str, str, str]:  # type: ignore[override]
         return self.left, self.operator, self.right

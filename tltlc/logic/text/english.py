@@ -21,7 +21,7 @@ from tltlc.logic.text.clause_parts import (
     without_negation,
 )
 from tltlc.logic.text.counts import NUMBERS, CountPrinter
-from tltlc.logic.text.notation import ASCII, write
+from tltlc.logic.text.notation import WORDS, write
 from tltlc.logic.text.phrases import (
     bracketed_phrase,
     has_time,
@@ -44,8 +44,8 @@ _PLAIN, _LIST, _SEQUENCE, _CLAUSE, _SCOPED = range(5)
 - ``_SCOPED``: even as the last part of another clause.
 """
 
-_DEEPEST: Final = 5
-"""Clauses nested deeper than this are printed as formulas, because such a sentence is unreadable."""
+_DEEPEST: Final = 7
+"""Clauses nested deeper than this are printed as formulas in words: such a sentence is unreadable."""
 
 _RankedClause = tuple[str, int]
 """The text of a clause, and its rank."""
@@ -137,7 +137,7 @@ def _clause(node: Formula, when: str, context: _SentenceContext) -> _RankedClaus
         text = imperative(node, "have", "avoid")
         return text if has_time(node) else f"{text} {when}", _rank_of_state(node)
     if context.depth == 0:
-        return f"satisfy {write(node, ASCII, counts=context.counts)}", _SCOPED
+        return f"satisfy {write(node, WORDS, counts=context.counts)}", _SCOPED
     operator = bounded_operator(node)
     if operator is not None:
         return _bounded_clause(operator, context)
@@ -341,7 +341,7 @@ def _step_noun(node: Formula, context: _SentenceContext) -> str:
     return (
         f"step with {bracketed_phrase(node)}"
         if is_state(node)
-        else f"step from which on to {_inner_clause(node, context)}"
+        else f"step that begins this: {_inner_clause(node, context)}"
     )
 
 

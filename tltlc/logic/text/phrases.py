@@ -21,30 +21,34 @@ _PHRASE: Final = Spelling(
 def phrase(state: Formula) -> str:
     """Return the formula in words: ``near(exit) and not seen``.
 
-    The negation of ``fuel > 5`` is written ``fuel <= 5``.
+    The negation of ``fuel > 5`` is written ``fuel <= 5``, and ``previous(fuel) > fuel`` is ``fuel < previous(fuel)``.
     """
-    return write(with_opposites(state), _PHRASE)
+    return write(with_opposites(state, signals_first=True), _PHRASE)
 
 
-def with_opposites(formula: Formula) -> Formula:
+def with_opposites(formula: Formula, *, signals_first: bool = False) -> Formula:
     """Return the formula for people, with ``fuel <= 5`` in place of ``!(fuel > 5)``.
 
+    With ``signals_first``, a signal that is compared with a value of its own stands before it.
     No automaton has atoms with such names, so the result is only good for printing.
     """
     done: dict[Formula, Formula] = {}
     for node in formula.bottom_up():
-        done[node] = _opposite(node) or rebuild(node, tuple(done[argument] for argument in node.args))
+        done[node] = _comparison(node, signals_first) or rebuild(node, tuple(done[argument] for argument in node.args))
     return done[formula]
 
 
-def _opposite(node: Formula) -> Formula | None:
-    """Return the negation of a comparison as a comparison, and that of a phrase with brackets; else None.
+def _comparison(node: Formula, signals_first: bool) -> Formula | None:
+    """Return a comparison or its negation as a comparison, and the negation of a phrase with brackets; else None.
 
     "not a at the step before" would say as well that a did not hold there.
     """
-    name = node.args[0].name if node.op == "not" else ""
+    name = (node.args[0] if node.op == "not" else node).name
     if isinstance(name, ComparisonName):
-        return atom(name.opposite)
+        name = name.signal_first if signals_first else name
+        return atom(name.opposite if node.op == "not" else name)
+    if node.op != "not":
+        return None
     return atom(SpokenName(f"not ({name})")) if isinstance(name, SpokenName) and " " in name else None
 
 
@@ -66,7 +70,8 @@ def object_phrase(state: Formula) -> str:
 def imperative(state: Formula, keep: str, avoid: str) -> str:
     """Return an instruction with one of two verbs: "keep a" for ``a``, and "avoid a" for ``!a``.
 
-    ``keep`` is the verb for formulas without a leading ``not``, ``avoid`` the verb for the others. An atom
+    ``keep`` is the verb for formulas without a leading ``not``, ``avoid`` the verb for the others. The negation of
+    a comparison of numbers is a comparison: "keep fuel <= 5" for ``!(fuel > 5)``. An atom
     with a :class:`~tltlc.core.names.SpokenName` may have its own verb. "Have" is "have had" if it is about the
     steps so far: "have hidden for 5 s" would ask for the next 5 s.
     """
@@ -75,6 +80,8 @@ def imperative(state: Formula, keep: str, avoid: str) -> str:
     if state.op != "not":
         return f"{keep} {object_phrase(state)}"
     (avoided,) = state.args
+    if isinstance(avoided.name, ComparisonName) and avoided.name.operator in ("<", ">"):
+        return f"{keep} {phrase(state)}"
     # "Avoid a and b" would mean to avoid each of them.
     return f"{avoid} {bracketed_phrase(avoided) if avoided.op == 'and' else object_phrase(avoided)}"
 
