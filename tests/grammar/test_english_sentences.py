@@ -450,7 +450,20 @@ DENIED_AFTER = [
     ("keep spray implies always for 2 s not fire", "from each step with `spray` on"),
     ("keep ends spray implies always for 2 s not fire", "from its end on"),
 ]
+NOT_AGAIN_UNTIL = [
+    (
+        "keep begins fire implies weak_next (not begins fire weak_until (spray or boss_dead))",
+        "if steps in a row count once",
+    ),
+    ("keep fire implies weak_next (not fire weak_until (spray or boss_dead))", "if each step counts"),
+]
 SEVERAL_READINGS = {
+    "after fire no fire until spray or boss_dead": NOT_AGAIN_UNTIL,
+    "after fire, no fire until spray or boss_dead": NOT_AGAIN_UNTIL,
+    "after fire, no further fire until spray or boss_dead": NOT_AGAIN_UNTIL,
+    "once fire, no fire before (spray or boss_dead)": NOT_AGAIN_UNTIL,
+    "no second fire until spray or boss_dead": NOT_AGAIN_UNTIL,
+    "no fire after fire until (spray or boss_dead)": NOT_AGAIN_UNTIL,
     "while fire keep health unchanged": SAME_WHILE,
     "keep health stays the same while fire": SAME_WHILE,
     "health does not change while fire": SAME_WHILE,

@@ -22,7 +22,9 @@ _IMPLICATIONS: Final = frozenset(("implies", "->", "=>"))
 _PAIRED: Final = frozenset("between both either neither exactly precisely to".split())
 """Words whose meaning no form has."""
 _MODALS: Final = ("must", "should", "may", "can", "will", "shall")
-_UNCLEAR: Final = frozenset("unless again longer may allowed end ends least more less but".split())
+_UNCLEAR: Final = frozenset(
+    "unless again longer may allowed end ends least more less but second further another".split()
+)
 """Words beside two conditions that the forms would take for their opposite, or leave out."""
 _EDGES: Final = ("begins", "ends")
 _BEGUN: Final = ("begins ", "ends ")

@@ -54,6 +54,7 @@ PHRASES: Final[Mapping[str, str]] = {
     "iff": "iff|if and only if|exactly when|exactly if|exactly while",
     "until": "until|till|up until",
     "before": "before",
+    "second": "second|further|other|another|new|more|next",
     "before_that": "before|first|beforehand|earlier|before that",
     "between": "between|in between",
     "never": "never|never ever|at no time|under no circumstances|not ever",

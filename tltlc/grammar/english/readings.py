@@ -7,13 +7,13 @@ from itertools import islice, product
 from typing import Any, Final
 
 from tltlc.core.record import record
+from tltlc.grammar.english.again import Again
 from tltlc.grammar.english.changes import Changes
 from tltlc.grammar.english.events import Crossing
 from tltlc.grammar.english.forms import Form, Part, forms
 from tltlc.grammar.english.periods import Periods
 from tltlc.grammar.english.rules import Reading, Rules
 from tltlc.grammar.english.sentence_parser import SentenceParser, sentence_parser
-from tltlc.grammar.english.sequels import Sequels
 from tltlc.grammar.english.terminals import UNKNOWN, Term, known_terms, terms
 from tltlc.grammar.english.transitions import Transitions
 from tltlc.grammar.mistakes.sentences.states import State
@@ -38,7 +38,7 @@ _MOST: Final = 64
 """The most ways in which the parts of one phrase are put together."""
 
 
-class Meanings(Periods, Sequels, Changes, Transitions):
+class Meanings(Periods, Again, Changes, Transitions):
     """The meanings of all rules of the grammar."""
 
 

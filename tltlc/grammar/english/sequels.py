@@ -1,4 +1,4 @@
-"""What the rules mean that say what comes first: `when a, b before c`, `a again only after b`, `b since the last a`."""
+"""What the rules mean that say what comes first: `when a, b before c`, `c only after b`, `b since the last a`."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _Found = Reading | list[Reading] | None
 
 
 class Sequels(Stretches):
-    """The meanings of the rules about what comes before something else, and about events that come again."""
+    """The meanings of the rules about what comes before something else."""
 
     def __init__(self, names: DeclaredNames) -> None:
         super().__init__(names)
@@ -202,56 +202,6 @@ class Sequels(Stretches):
             return None
         return Asked(Answer("now", joined([state.negated(), exception], "or")))
 
-    # Events that come again.
-
-    def only_after(self, state: State, event: Event) -> _Found:
-        condition = as_state(event)
-        if not self.is_again or condition is None or not are_simple(state, condition):
-            return None if self.is_again else super().only_after(state, event)
-        return [
-            Reading(
-                (
-                    f"keep {again.at(AND)} and previously once {again.at(ATOM)} implies "
-                    f"{self._since_last(condition, again).text}",
-                ),
-                what,
-            )
-            for again, what in _beginnings(state)
-        ]
-
-    def avoid_second(self, state: State, event: Event) -> _Found:
-        self.is_again = True
-        return self.only_after(state, event)
-
-    def only_when(self, state: State, event: Event) -> _Found:
-        condition = as_state(event)
-        if not self.is_again:
-            return super().only_when(state, event)
-        if condition is None or not are_simple(state):
-            return None
-        readings = []
-        for again, what in _beginnings(state):
-            known = self.at_steps_of(state, condition)
-            if known is not None:
-                clause = f"keep {again.at(AND)} and previously once {again.at(ATOM)} implies {known.at(OR)}"
-                readings.append(Reading((clause,), what))
-        return readings
-
-    def avoid_until(self, state: State, end: State) -> _Found:
-        if not self.is_again:
-            return super().avoid_until(state, end)
-        if not are_simple(state, end):
-            return None
-        return [
-            Reading((f"keep {again.at(OR)} implies weak_next (not {again.at(ATOM)} weak_until {end.at(ATOM)})",), what)
-            for again, what in _beginnings(state)
-        ]
-
-    def _since_last(self, state: State, event: State) -> State:
-        since = self.at_steps_of(event, self.since(state, event))
-        assert since is not None
-        return since
-
     # What must have come since the event before.
 
     def needs_since(self, event: State, since: State) -> _Found:
@@ -366,13 +316,6 @@ class Sequels(Stretches):
 
 def _is_time(number: Number) -> bool:
     return number.text.startswith(("time_holding(", "time_since("))
-
-
-def _beginnings(state: State) -> list[tuple[State, str]]:
-    """Return the beginning of an event, and the event if it is another one, with what tells them apart."""
-    if state.text.startswith(("begins ", "ends ")):
-        return [(state, "")]
-    return [(State(begun_text(state)), "if steps in a row count once"), (state, "if each step counts")]
 
 
 def _as_formula(asked: Asked) -> Asked:

@@ -10,6 +10,7 @@ from tltlc.diagnostics.diagnostic import Diagnostic, Fix, replacement_fix
 from tltlc.grammar.english.clauses import plain_text
 from tltlc.grammar.english.notes import equality_notes, notes
 from tltlc.grammar.english.readings import sentence, sentence_forms
+from tltlc.grammar.english.doubts import takes_one_reading
 from tltlc.grammar.english.rules import Reading
 from tltlc.grammar.english.terminals import CALLED
 from tltlc.grammar.lexer import END, tokenize
@@ -161,7 +162,7 @@ def _may_miss(failure: ParseFailure, fix: Fix, words: Words) -> bool:
     is_compared = " implies always " in text and "previous(" in text
     is_same = words.find(LASTING) is not None and keeps_values(text.partition(" implies ")[2])
     is_denied = " implies always for " in text and " not " in text and words.find(phrases("after")) is not None
-    return is_compared or is_same or is_denied or (" implies always for " in text and words.find(UNLESS) is not None)
+    return is_compared or is_same or is_denied or takes_one_reading(text, words) or (" implies always for " in text and words.find(UNLESS) is not None)
 
 
 def _is_same(reading: Reading, failure: ParseFailure, fix: Fix) -> bool:
