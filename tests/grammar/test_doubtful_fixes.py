@@ -29,6 +29,10 @@ def error_of(clause: str) -> Diagnostic:
     [
         ("after fire, no fire until spray", "`keep fire implies weak_next (not fire weak_until spray)`"),
         ("once fire, no fire before spray", "`keep fire implies weak_next (not fire weak_until spray)`"),
+        (
+            "when fire for 3 s, spray within 2 s",
+            "`keep begins (time_holding(fire) >= 3 s) implies eventually within 2 s spray`",
+        ),
     ],
 )
 def test_a_help_names_the_readings_of_a_sentence(typed: str, offered: str) -> None:
@@ -39,3 +43,7 @@ def test_a_help_names_the_readings_of_a_sentence(typed: str, offered: str) -> No
 
 def test_no_form_is_for_the_opposite_of_what_no_second_forbids() -> None:
     assert "(boss_dead weak_until" not in (error_of("after fire, no second boss_dead until spray").help or "")
+
+
+def test_a_help_with_readings_says_how_many_steps_a_time_takes() -> None:
+    assert "`time_holding(fire) >= 3 s` needs 31 steps" in (error_of("when fire for 3 s, spray within 2 s").help or "")

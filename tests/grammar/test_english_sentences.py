@@ -159,14 +159,16 @@ ONE_READING = {
     ],
     "avoid fire and not spray for more than 3 s": ["avoid time_holding(fire and not spray) > 3 s"],
     "avoid fire for more than 5 steps": ["avoid always for 5 steps fire and next after 5 steps fire"],
-    "whenever health falls below 20 then spray within 2 s": ["keep within 2 s of begins (health < 20), spray"],
+    "whenever health falls below 20 then spray within 2 s": [
+        "keep begins (health < 20) implies eventually within 2 s spray"
+    ],
     "when health falls below 20, spray": ["keep health < 20 implies spray"],
     "fire starts only if spray for at least 5 s": ["keep begins fire implies time_holding(spray) >= 5 s"],
     "fire only after spray for 3 s": ["keep begins fire implies time_holding(spray) >= 3 s"],
     "avoid fire unless spray since last fire": ["keep fire implies previously (not fire since (spray and not fire))"],
     "keep health never decreases unless fire": ["keep health >= previous(health) or fire"],
     "whenever fire then spray or boss_dead within 5 s unless phase is menu": [
-        "keep within 5 s of fire, spray or boss_dead or phase is menu"
+        "keep fire implies eventually within 5 s (spray or boss_dead or phase is menu)"
     ],
     "whenever fire starts keep fire for exactly 4 steps": [
         "keep begins fire implies (always for 4 steps fire) and weak_next after 4 steps not fire"
@@ -177,7 +179,7 @@ ONE_READING = {
     ],
     "when fire, coins > coins at start": ["keep fire implies coins > initial(coins)"],
     "whenever fire && spray, boss_dead within 2 frames unless state == Dead": [
-        "keep within 2 steps of fire and spray, boss_dead or state is Dead"
+        "keep fire and spray implies eventually within 2 steps (boss_dead or state is Dead)"
     ],
     "avoid state becomes Dead unless prev(state) == Idle": [
         "keep begins (state is Dead) implies previously (state is Idle)"
@@ -266,7 +268,7 @@ ONE_READING = {
         "keep fire implies next after 2 steps eventually within 2 steps spray"
     ],
     "when phase becomes shift while fire, spray within 3 s": [
-        "keep within 3 s of begins (phase is shift) and fire, spray"
+        "keep begins (phase is shift) and fire implies eventually within 3 s spray"
     ],
     "G (fire -> spray or not boss_dead)": ["keep fire implies spray or not boss_dead"],
     "keep spray -> Y((!fire) S boss_dead)": ["keep spray implies previously (not fire since boss_dead)"],
@@ -280,13 +282,13 @@ ONE_READING = {
     "G(health >= 0.5 * health@0)": ["keep health >= 0.5 * initial(health)"],
     "fire xor (phase == menu or phase == shift)": ["keep fire iff not (phase is menu or phase is shift)"],
     "duration(fire) <= 3s": ["keep time_holding(fire) <= 3 s"],
-    "fire => within(5s, spray || boss_dead)": ["keep within 5 s of fire, spray or boss_dead"],
+    "fire => within(5s, spray || boss_dead)": ["keep fire implies eventually within 5 s (spray or boss_dead)"],
     "on(fire): spray for 1.5s": ["keep fire implies always for 1.5 s spray"],
     "F[<=3min] (boss_dead && coins > 40)": ["require eventually within 3 min (boss_dead and coins > 40)"],
     "never: prev(phase) == menu and phase == results": ["avoid previously (phase is menu) and phase is results"],
     "G(fire -> X G phase == menu)": ["keep fire implies weak_next always phase is menu"],
     "when fire: (not spray) U[<=20s] boss_dead": [
-        "keep within 20 s of fire, boss_dead",
+        "keep fire implies eventually within 20 s boss_dead",
         "keep fire implies (not spray until boss_dead)",
     ],
     "phase == menu -> phase == shift -> phase == results -> fire": [
@@ -320,7 +322,7 @@ ONE_READING = {
     "no fire for 2 s after spray starts": ["keep begins spray implies always for 2 s not fire"],
     "keep boss_dead for 2 s after spray": ["keep spray implies always for 2 s boss_dead"],
     "phase stays menu or shift": ["keep phase is menu or phase is shift"],
-    "if fire then spray within a second": ["keep within 1 s of fire, spray"],
+    "if fire then spray within a second": ["keep fire implies eventually within 1 s spray"],
     # How long each stretch lasts, and how often.
     "each spray lasts exactly 3 s": [
         "keep begins spray implies always for 3 s spray",
@@ -358,20 +360,24 @@ ONE_READING = {
     "when fire\nthen health is 3 or less within 5 s\nand stays so": [
         "keep fire implies eventually within 5 s always health <= 3"
     ],
-    "given phase is menu\nwhen fire\nthen spray within 2 s": ["keep within 2 s of phase is menu and fire, spray"],
+    "given phase is menu\nwhen fire\nthen spray within 2 s": [
+        "keep phase is menu and fire implies eventually within 2 s spray"
+    ],
     "at boss_dead: coins > coins at start": ["keep boss_dead implies coins > initial(coins)"],
-    "fire must be followed by spray within 3 s": ["keep within 3 s of fire, spray"],
-    "every fire must be answered by spray within 3 s": ["keep within 3 s of fire, spray"],
-    "every fire must be spray within 3 s": ["keep within 3 s of fire, spray"],
+    "fire must be followed by spray within 3 s": ["keep fire implies eventually within 3 s spray"],
+    "every fire must be answered by spray within 3 s": ["keep fire implies eventually within 3 s spray"],
+    "every fire must be spray within 3 s": ["keep fire implies eventually within 3 s spray"],
     "not fire for 30 s => phase menu": ["keep time_holding(not fire) >= 30 s implies phase is menu"],
-    "phase starts shift => spray within 1 s": ["keep within 1 s of begins (phase is shift), spray"],
+    "phase starts shift => spray within 1 s": ["keep begins (phase is shift) implies eventually within 1 s spray"],
     "when boss_dead, boss_dead": ["keep boss_dead implies always boss_dead"],
     "fire must be shown if and only if phase is menu": ["keep fire iff phase is menu"],
     "when fire then health must be 0": ["keep fire implies health <= 0"],
     "when phase is shift ends, health is 0 within 3 s and remains 0": [
         "keep ends (phase is shift) implies eventually within 3 s always health <= 0"
     ],
-    "while phase is shift, when fire, spray within 0.5 s": ["keep within 0.5 s of phase is shift and fire, spray"],
+    "while phase is shift, when fire, spray within 0.5 s": [
+        "keep phase is shift and fire implies eventually within 0.5 s spray"
+    ],
     # Numbers.
     "health may rise by at most 30 per step": ["keep health <= previous(health) + 30"],
     "when fire, coins must be 3 or fewer": ["keep fire implies coins <= 3"],
@@ -457,7 +463,20 @@ NOT_AGAIN_UNTIL = [
     ),
     ("keep fire implies weak_next (not fire weak_until (spray or boss_dead))", "if each step counts"),
 ]
+ONCE_OR_ANEW = [
+    (
+        "keep begins (time_holding(not fire) >= 8 s) implies eventually within 2 s spray",
+        "if once each time that this begins",
+    ),
+    (
+        "keep time_holding(not fire) >= 8 s implies eventually within 2 s spray",
+        "if anew at each step while it lasts",
+    ),
+]
 SEVERAL_READINGS = {
+    "when there is no fire for 8 s, spray within 2 s": ONCE_OR_ANEW,
+    "when not fire for 8 s, spray within 2 s": ONCE_OR_ANEW,
+    "spray within 2 s after not fire for 8 s or more": ONCE_OR_ANEW,
     "after fire no fire until spray or boss_dead": NOT_AGAIN_UNTIL,
     "after fire, no fire until spray or boss_dead": NOT_AGAIN_UNTIL,
     "after fire, no further fire until spray or boss_dead": NOT_AGAIN_UNTIL,
@@ -538,7 +557,7 @@ SEVERAL_READINGS = {
     ],
     "whenever fire becomes false then not spray within 5 s": [
         ("keep ends fire implies not eventually within 5 s spray", "if it must hold at no step of that time"),
-        ("keep within 5 s of ends fire, not spray", "if one step is enough"),
+        ("keep ends fire implies eventually within 5 s not spray", "if one step is enough"),
     ],
     "once fire keep fire until spray": [
         ("keep fire implies (fire weak_until spray)", "if play may end before `spray`"),
@@ -690,10 +709,13 @@ SEVERAL_READINGS = {
     ],
     "when fire starts, spray within 2 s then boss_dead until phase is menu": [
         (
-            "keep within 2 s of begins fire, spray and (boss_dead weak_until phase is menu)",
+            "keep begins fire implies eventually within 2 s (spray and (boss_dead weak_until phase is menu))",
             "if play may end before `phase is menu`",
         ),
-        ("keep within 2 s of begins fire, spray and (boss_dead until phase is menu)", "if `phase is menu` must come"),
+        (
+            "keep begins fire implies eventually within 2 s (spray and (boss_dead until phase is menu))",
+            "if `phase is menu` must come",
+        ),
     ],
     "fire while spray": [
         ("reach fire and spray", "if it is a goal"),
@@ -850,7 +872,7 @@ def test_one_fix_mends_all_words_of_a_clause_that_can_be_parsed(typed: str, mean
             "`times_since(fire, spray)` counts how often `fire` begins, anew from each step with `spray` on",
         ),
         (
-            "when fire for 8 s, spray within 2 s",
+            "when fire for 8 s, eventually spray",
             "each step with `time_holding(fire) >= 8 s` asks anew; write `begins (time_holding(fire) >= 8 s)` if once "
             "is enough\n`time_holding(fire) >= 8 s` needs 81 steps in a row, and its time is 0 s at the first of them; "
             "`time_holding(fire) >= 7.9 s` needs 80",

@@ -42,8 +42,8 @@ def marked(error: Diagnostic) -> str:
 
 BRACKETINGS = {
     "keep alarm implies within 1 s hidden until seen": [
-        "keep within 1 s of alarm, (hidden weak_until seen)",
-        "keep within 1 s of alarm, (hidden until seen)",
+        "keep alarm implies eventually within 1 s (hidden weak_until seen)",
+        "keep alarm implies eventually within 1 s (hidden until seen)",
         "keep alarm implies (hidden until seen) and eventually within 1 s seen",
     ],
     "keep alarm implies hidden within 1 s until seen": [

@@ -30,7 +30,7 @@ ONE_READING = {
     "keep after begins fire, spray or not fire within 30 s": [
         "keep begins fire implies eventually within 30 s (spray or not fire)"
     ],
-    "keep whenever begins fire spray within 30 s": ["keep within 30 s of begins fire, spray"],
+    "keep whenever begins fire spray within 30 s": ["keep begins fire implies eventually within 30 s spray"],
     "keep fire implies spray since the last fire": [
         "keep fire implies previously (not fire since (spray and not fire))"
     ],

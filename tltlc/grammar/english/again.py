@@ -113,8 +113,6 @@ class Again(Sequels):
             return None
         return _not_again_until(state, until[1])
 
-    # Steps that are counted.
-
 
 def _not_again_until(state: State, end: State) -> list[Reading]:
     return [

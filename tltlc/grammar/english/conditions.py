@@ -210,6 +210,10 @@ class Conditions(Quantities):
         assert isinstance(duration, Duration)
         return Held(state, str(sign), duration)
 
+    def not_held(self, term: Term, *rest: str | Duration) -> Held | None:
+        """Return the event of `no click for 8 s`."""
+        return self.held(State(term.text).negated(), *rest)
+
     def held_or_more(self, state: State, duration: Duration) -> Held:
         return Held(state, ">=", duration)
 

@@ -121,6 +121,16 @@ def _state_text(event: Expr, source: SourceFile) -> str:
     return source.slice(event.span)
 
 
+def reading_notes(clauses: str, names: DeclaredNames, typed: str) -> tuple[str, ...]:
+    """Return what to know of the numbers in clauses that a sentence may mean: fractions, and steps that a time takes."""
+    source, specs = _written(clauses) or (None, ())
+    times: list[str] = []
+    if source is not None and "time_holding" not in typed:
+        compared = (part for part in _parts_of(specs) if isinstance(part, BinaryExpr) and part.op in (">", ">="))
+        times = [_of_time(part, source, names.step_s) for part in compared if _is_held(part.left)]
+    return (*equality_notes(clauses, typed), *dict.fromkeys(note for note in times if note))
+
+
 def equality_notes(clauses: str, typed: str) -> tuple[str, ...]:
     """Return why clauses have two comparisons of a number with fractions in place of the `==` of ``typed``."""
     written = _written(clauses)

@@ -6,6 +6,7 @@ from typing import Final, Literal
 
 from tltlc.core.record import record, replace
 from tltlc.grammar.english.answers import MOST_STEPS, Answers, Asked, is_negative, lasting_formula
+from tltlc.grammar.english.doubts import lasts_on
 from tltlc.grammar.english.events import Counted, Crossing, Event, Held, as_state
 from tltlc.grammar.english.quantities import MIRRORED, Change, Duration, Number
 from tltlc.grammar.english.terminals import Term
@@ -33,8 +34,7 @@ class Goals:
     condition: str = ""
 
 
-LASTING: Final = ("while", "as long as")
-"""Words before a condition that lasts."""
+LASTING: Final = ("while", "as long as")  # words before a condition that lasts
 _Found = Reading | list[Reading] | None
 
 
@@ -268,9 +268,6 @@ class Rules(Answers):
             return Reading((f"keep {answer.state.at(OR)} or {condition.at(OR)}",))
         return None
 
-    def unless_first(self, event: Event, answers: list[Asked]) -> _Found:
-        return self.unless(answers, event)
-
 
 def are_simple(*states: State) -> bool:
     """Whether no condition is made of several: a word between them may belong to the nearest alone."""
@@ -340,12 +337,25 @@ def _answer_readings(when: When, event: Event, state: State, asked: Asked) -> li
     if when in LASTING and answer.keyword == "reach":
         return []
     is_each = when in LASTING or (when == "each" and answer.kind == "now")
-    clauses = answered(state, answer, is_from_then=when == "after", is_each=is_each)
-    if clauses is not None:
+    if clauses := answered(state, answer, is_from_then=when == "after", is_each=is_each):
+        if answer.kind == "within" and lasts_on(state.text):
+            return _once_or_anew(state, answer, asked.condition)
         return [Reading(clauses, asked.condition)]
     if asked.condition:
         return []
     return _two_readings(state, answer)
+
+
+def _once_or_anew(event: State, answer: Answer, condition: str) -> list[Reading]:
+    """Return the readings of `when a for 3 s, b within 2 s`: once for each time, or anew at each step."""
+    asked, also = (
+        f"eventually within {answer.time} {answer.state.at(ATOM)}",
+        f"{condition}, and " if condition else "if ",
+    )
+    return [
+        Reading((f"keep begins ({event.text}) implies {asked}",), f"{also}once each time that this begins"),
+        Reading((f"keep {event.at(OR)} implies {asked}",), f"{also}anew at each step while it lasts"),
+    ]
 
 
 def _ending(event: State, asked: Asked, state: State, end: State) -> list[Reading]:

@@ -189,6 +189,9 @@ class Sequels(Stretches):
             Asked(Answer("now", State(f"always ({a} or {b})")), f"if it goes on after each `{exception.text}`", True),
         ]
 
+    def unless_first(self, event: Event, answers: list[Asked]) -> _Found:
+        return self.unless(answers, event)
+
     def kept_unless(self, state: State, event: Event) -> list[Asked] | None:
         excused = self.now_unless(state, event)
         lasting = self.forever_unless(state, event)

@@ -91,7 +91,7 @@ def clause_of(event: State, answer: Answer) -> str:
     if answer.kind == "within" and answer.is_negative:
         return f"keep {condition} implies not eventually within {time} {state.negated().at(ATOM)}"
     if answer.kind == "within":
-        return f"keep within {time} of {event.at(OR)}, {state.at(OR)}"
+        return f"keep {condition} implies eventually within {time} {state.at(ATOM)}"
     operators = {
         "lasting": f"always for {time}",
         "delayed": f"next after {time}",

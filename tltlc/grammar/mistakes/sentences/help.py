@@ -8,7 +8,7 @@ from typing import Final
 from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import Diagnostic, Fix, replacement_fix
 from tltlc.grammar.english.clauses import plain_text
-from tltlc.grammar.english.notes import equality_notes, notes
+from tltlc.grammar.english.notes import notes, reading_notes
 from tltlc.grammar.english.readings import sentence, sentence_forms
 from tltlc.grammar.english.doubts import takes_one_reading
 from tltlc.grammar.english.rules import Reading
@@ -162,7 +162,13 @@ def _may_miss(failure: ParseFailure, fix: Fix, words: Words) -> bool:
     is_compared = " implies always " in text and "previous(" in text
     is_same = words.find(LASTING) is not None and keeps_values(text.partition(" implies ")[2])
     is_denied = " implies always for " in text and " not " in text and words.find(phrases("after")) is not None
-    return is_compared or is_same or is_denied or takes_one_reading(text, words) or (" implies always for " in text and words.find(UNLESS) is not None)
+    return (
+        is_compared
+        or is_same
+        or is_denied
+        or takes_one_reading(text, words)
+        or (" implies always for " in text and words.find(UNLESS) is not None)
+    )
 
 
 def _is_same(reading: Reading, failure: ParseFailure, fix: Fix) -> bool:
@@ -192,7 +198,7 @@ def _with_readings(failure: ParseFailure, diagnostic: Diagnostic, found: tuple[R
     texts = [" and ".join(f"`{clause}`" for clause in reading.clauses) for reading in valid]
     if len(valid) > 1 or valid[0].condition:
         described = [f"{text} {reading.condition}".rstrip() for text, reading in zip(texts, valid, strict=True)]
-        known = equality_notes(" ".join(valid[0].clauses), failure.source.slice(span))
+        known = reading_notes(" ".join(valid[0].clauses), declared_names(failure.source), failure.source.slice(span))
         return replace(diagnostic, help="\n".join((f"write {', or '.join(described)}", *known)), fixes=())
     indent = failure.source.text[: span.start].rpartition("\n")[2]
     separator = f"\n{indent}" if not indent.strip() else " "
