@@ -33,6 +33,10 @@ def error_of(clause: str) -> Diagnostic:
             "when fire for 3 s, spray within 2 s",
             "`keep begins (time_holding(fire) >= 3 s) implies eventually within 2 s spray`",
         ),
+        ("fire implies spray before boss_dead", "`keep fire implies (not boss_dead until (spray and not boss_dead))`"),
+        ("reach fire before spray", "`require not spray until (fire and not spray)`"),
+        ("while fire, health never falls", "`keep fire and previously fire implies health >= previous(health)`"),
+        ("in fire, health stays the same", "`keep fire and previously fire implies "),
     ],
 )
 def test_a_help_names_the_readings_of_a_sentence(typed: str, offered: str) -> None:
@@ -47,3 +51,22 @@ def test_no_form_is_for_the_opposite_of_what_no_second_forbids() -> None:
 
 def test_a_help_with_readings_says_how_many_steps_a_time_takes() -> None:
     assert "`time_holding(fire) >= 3 s` needs 31 steps" in (error_of("when fire for 3 s, spray within 2 s").help or "")
+
+
+@pytest.mark.parametrize(
+    ("typed", "clause"),
+    [
+        (
+            "keep health <= value_at(health, phase changes) + 3",
+            "keep health <= value_at(health, ends (phase is menu) or ends (phase is shift) or ends (phase is results))"
+            " + 3",
+        ),
+        (
+            "keep begins (health <= 0) implies fire until (spray or 5 s)",
+            "keep begins (health <= 0) implies (always for 5 s fire) or (fire weak_until spray)",
+        ),
+        ("keep fire until spray or for 5 s", "require (always for 5 s fire) or (fire weak_until spray)"),
+    ],
+)
+def test_a_fix_is_the_clause_of_the_only_reading(typed: str, clause: str) -> None:
+    assert [edit.text for edit in error_of(typed).fixes[0].edits] == [clause]

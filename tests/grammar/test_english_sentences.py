@@ -32,7 +32,46 @@ signal phase: (menu, shift, results)
 signal state: (Idle, Dead)
 """
 
+VARIES = "ends (phase is menu) or ends (phase is shift) or ends (phase is results)"
+EARLIER = "asked where the condition begins"
+ANEW = "asked anew at each step with the condition"
 ONE_READING = {
+    # Steps with a condition, and what an event or a time ends.
+    "fire only after at least 3 steps with spray": [
+        "keep fire implies once (spray and previously once (spray and previously once spray))"
+    ],
+    "fire only after more than 1 step with spray": ["keep fire implies once (spray and previously once spray)"],
+    "keep begins (health <= 0) implies fire until (spray or 5 s)": [
+        "keep begins (health <= 0) implies (always for 5 s fire) or (fire weak_until spray)"
+    ],
+    "keep fire until spray or 5 s": ["require (always for 5 s fire) or (fire weak_until spray)"],
+    "fire until 5 s have passed or spray, whichever comes first": [
+        "require (always for 5 s fire) or (fire weak_until spray)"
+    ],
+    "keep boss_dead implies fire until (spray or 5 s)": [
+        "keep boss_dead implies (always for 5 s fire) or (fire weak_until spray)"
+    ],
+    "when boss_dead, fire until spray or for 5 s": [
+        "keep boss_dead implies (always for 5 s fire) or (fire weak_until spray)"
+    ],
+    "when boss_dead, fire for 5 s or until spray": [
+        "keep boss_dead implies (always for 5 s fire) or (fire weak_until spray)"
+    ],
+    "when boss_dead, for 5 s or until spray, fire": [
+        "keep boss_dead implies (always for 5 s fire) or (fire weak_until spray)"
+    ],
+    "after boss_dead, no fire until spray or 5 s": [
+        "keep boss_dead implies (always for 5 s not fire) or (not fire weak_until spray)"
+    ],
+    # Where an enum changes.
+    "keep health <= value_at(health, phase changes) + 3": [f"keep health <= value_at(health, {VARIES}) + 3"],
+    "keep times_since(fire, phase changed) <= 2": [f"keep times_since(fire, {VARIES}) <= 2"],
+    "keep phase changed implies fire": [f"keep {VARIES} implies fire"],
+    # The highest and the lowest value.
+    "health never more than 20 above its lowest since fire": ["keep health <= lowest_since(health, begins fire) + 20"],
+    "health never drops more than 20 below its highest": ["keep health >= highest(health) - 20"],
+    "health stays within 20 of its lowest so far": ["keep health <= lowest(health) + 20"],
+    "coins at most 2 below its highest since fire": ["keep coins >= highest_since(coins, begins fire) - 2"],
     # Since an event, and in each period.
     "keep times(fire) since spray <= 2": ["keep times_since(fire, spray) <= 2"],
     "times(fire) <= 9 since spray": ["keep times_since(fire, spray) <= 9"],
@@ -456,6 +495,35 @@ DENIED_AFTER = [
     ("keep spray implies always for 2 s not fire", "from each step with `spray` on"),
     ("keep ends spray implies always for 2 s not fire", "from its end on"),
 ]
+BEFORE = [
+    (
+        "keep begins fire implies (not boss_dead weak_until spray)",
+        f"if `spray` must come before `boss_dead` or at the same step, and neither need come; {EARLIER}",
+    ),
+    (
+        "keep begins fire implies (not boss_dead until spray)",
+        f"if `spray` must come, before `boss_dead` or at the same step; {EARLIER}",
+    ),
+    (
+        "keep fire implies (not boss_dead weak_until spray)",
+        f"if `spray` must come before `boss_dead` or at the same step, and neither need come; {ANEW}",
+    ),
+    (
+        "keep fire implies (not boss_dead until (spray and not boss_dead))",
+        f"if `spray` must come, at an earlier step than `boss_dead`; {ANEW}",
+    ),
+]
+NO_FALL_WHILE = [
+    ("keep fire and previously fire implies health >= previous(health)", "within each `fire`"),
+    ("keep fire implies health >= previous(health)", "also from the step before it begins"),
+]
+ONE_PER = [
+    ("keep times_since(fire, begins spray) <= 1", "if at most 1, and each `begins spray` begins a new count"),
+    (
+        "keep ends spray implies previously (times_since(fire, begins spray) >= 1)",
+        "if at least 1, asked for where one ends",
+    ),
+]
 NOT_AGAIN_UNTIL = [
     (
         "keep begins fire implies weak_next (not begins fire weak_until (spray or boss_dead))",
@@ -474,6 +542,72 @@ ONCE_OR_ANEW = [
     ),
 ]
 SEVERAL_READINGS = {
+    "keep fire implies spray before boss_dead": BEFORE,
+    "fire implies spray before boss_dead": BEFORE,
+    "reach times(fire) >= 3 before phase is menu": [
+        (
+            "require phase is not menu until (times(fire) >= 3 and phase is not menu)",
+            "if it must come, and `phase is menu` at no step before it or with it",
+        ),
+        (
+            "require phase is not menu until times(fire) >= 3",
+            "if it must come, and `phase is menu` may come at the same step",
+        ),
+        (
+            "require phase is not menu weak_until times(fire) >= 3",
+            "if it need not come, and `phase is menu` may come at the same step",
+        ),
+        (
+            "reach times(fire) >= 3 then phase is menu",
+            "if `phase is menu` must follow at a later step, and may come earlier, too",
+        ),
+    ],
+    "reach fire then spray then boss_dead with no lap > 3 in between": [
+        (
+            "reach fire and lap <= 3 and next (lap <= 3 until (spray and lap <= 3 and next (lap <= 3 until "
+            "(boss_dead and lap <= 3))))",
+            "if no step from `fire` to `boss_dead` may have it, these two included",
+        ),
+        (
+            "reach fire and next (lap <= 3 until (spray and lap <= 3 and next (lap <= 3 until boss_dead)))",
+            "if only no step between `fire` and `boss_dead` may have it",
+        ),
+    ],
+    "fire only after 2 steps of spray": [
+        ("keep fire implies once (spray and previously once spray)", "if the steps may lie apart"),
+        ("keep fire implies once (spray and previously spray)", "if they must follow one another"),
+    ],
+    "after fire no fire until spray or 5 s": [
+        (
+            "keep begins fire implies weak_next ((always for 5 s not begins fire) or "
+            "(not begins fire weak_until spray))",
+            "if steps in a row count once",
+        ),
+        (
+            "keep fire implies weak_next ((always for 5 s not fire) or (not fire weak_until spray))",
+            "if each step counts",
+        ),
+    ],
+    "while fire, health never falls": NO_FALL_WHILE,
+    "in fire, health never falls": NO_FALL_WHILE,
+    "in fire, health stays the same": SAME_WHILE,
+    "one fire per spray": ONE_PER,
+    "fire once per spray": ONE_PER,
+    "health above 10 in fire": [
+        ("reach health > 10 and fire", "if it is a goal"),
+        ("keep fire implies health > 10", "for each step with `fire`"),
+    ],
+    "fire twice while spray": [
+        ("reach spray and times_since(fire, begins spray) >= 2", "if it is a goal, in one stretch with `spray`"),
+        (
+            "reach times((begins fire) and spray) >= 2",
+            "if it is a goal, and all steps with `spray` count together",
+        ),
+        (
+            "keep spray implies times_since(fire, begins spray) <= 2",
+            "if no more are allowed in each stretch with `spray`",
+        ),
+    ],
     "when there is no fire for 8 s, spray within 2 s": ONCE_OR_ANEW,
     "when not fire for 8 s, spray within 2 s": ONCE_OR_ANEW,
     "spray within 2 s after not fire for 8 s or more": ONCE_OR_ANEW,
@@ -760,6 +894,7 @@ SEVERAL_READINGS = {
 }
 
 NO_READING = (
+    "health never more than 20 above its highest",  # which it never is
     "never fire or spray",
     "keep fire or spray unless boss_dead and fire",
     "reach not fire within 5 s",
@@ -780,6 +915,7 @@ NO_READING = (
 )
 
 UNSAYABLE = {
+    "fire only after at least 9 steps with spray": "steps in a row once",
     "every third fire must be spray": "no clause can say what holds at each third `fire`",
     "at some point health is 30 higher than 2 s ago": "no clause can say what `health` was 2 s ago",
     "health never falls by more than 5 in 30 s": "no clause can say what `health` was 30 s ago",

@@ -33,7 +33,7 @@ class Again(Sequels):
                 ),
                 what,
             )
-            for again, what in _beginnings(state)
+            for again, what in beginnings(state)
         ]
 
     def avoid_second(self, state: State, event: Event) -> _Found:
@@ -47,7 +47,7 @@ class Again(Sequels):
         if condition is None or not are_simple(state):
             return None
         readings = []
-        for again, what in _beginnings(state):
+        for again, what in beginnings(state):
             known = self.at_steps_of(state, condition)
             if known is not None:
                 clause = f"keep {again.at(AND)} and previously once {again.at(ATOM)} implies {known.at(OR)}"
@@ -117,11 +117,11 @@ class Again(Sequels):
 def _not_again_until(state: State, end: State) -> list[Reading]:
     return [
         Reading((f"keep {again.at(OR)} implies weak_next (not {again.at(ATOM)} weak_until {end.at(ATOM)})",), what)
-        for again, what in _beginnings(state)
+        for again, what in beginnings(state)
     ]
 
 
-def _beginnings(state: State) -> list[tuple[State, str]]:
+def beginnings(state: State) -> list[tuple[State, str]]:
     """Return the beginning of an event, and the event if it is another one, with what tells them apart."""
     if state.text.startswith(("begins ", "ends ")):
         return [(state, "")]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import Final
 
 from tltlc.grammar.english.answers import Asked
@@ -15,6 +16,9 @@ from tltlc.grammar.mistakes.sentences.states import AND, ATOM, OR, State, joined
 
 _MOST_STEPS_BACK: Final = 10
 """The most steps by which a clause looks back at the value of a number."""
+
+_ONE_WAY: Final = re.compile(r"(\w+) (<=|>=) previous\(\1\)")
+"""A number that never rises, or never falls."""
 
 _Found = Reading | list[Reading] | None
 
@@ -104,11 +108,11 @@ class Changes(Rules):
         return self._same_while(when, event, answers) or super().last(answers, when, event)
 
     def _same_while(self, when: When, event: Event, answers: list[Asked]) -> list[Reading] | None:
-        """Return the readings of `while a, b stays the same`: is the first step of a compared with the one before?"""
+        """Return the readings of `while a, b stays the same`, and of `while a, b never falls`: is the first step of a compared with the one before?"""
         state, asked = as_state(event), answers[0]
         same, kind = asked.answer.state, asked.answer.kind
         is_kept = kind in ("now", "always") and not asked.is_formula and asked.answer.keyword != "reach"
-        is_same = same.text in self._kept_enums or keeps_values(same.text)
+        is_same = same.text in self._kept_enums or keeps_values(same.text) or _ONE_WAY.fullmatch(same.text)
         if when not in LASTING or state is None or answers[1:] or not is_kept or not is_same:
             return None
         if state.text.startswith(("begins ", "ends ")) or "previous" in state.text:
@@ -118,6 +122,13 @@ class Changes(Rules):
             Reading((f"keep {within.at(OR)} implies {same.at(OR)}",), f"within each `{state.text}`"),
             Reading((f"keep {state.at(OR)} implies {same.at(OR)}",), "also from the step before it begins"),
         ]
+
+    def at_condition(self, state: State, answers: list[Asked]) -> _Found:
+        return self._same_while("while", state, answers) or self.first("when", state, answers)
+
+    def last_in(self, answers: list[Asked], state: State) -> _Found:
+        """Return the readings of `hp above 10 in storm`."""
+        return self.last(answers, "while", state)
 
     # Values at other steps.
 

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from tltlc.core.record import record
 from tltlc.grammar.english.events import Counted, Crossing, Event, Held, as_state
 from tltlc.grammar.english.quantities import Duration, Number, Quantities, comparison
-from tltlc.grammar.english.terminals import Term
+from tltlc.grammar.english.terminals import Term, change_of_enum
 from tltlc.grammar.mistakes.declared_names import DeclaredNames
 from tltlc.grammar.mistakes.sentences.states import ATOM, OR, RULE, State, joined
 
@@ -53,6 +53,16 @@ class Conditions(Quantities):
     def ends(self, term: Term) -> State:
         self.settled[f"ends {term.text}"] = State(term.text).negated()
         return State(f"ends {term.text}")
+
+    def begins_condition(self, state: State) -> State:
+        edge = State(f"begins ({state.text})")
+        self.settled[edge.text] = state
+        return edge
+
+    def ends_condition(self, state: State) -> State:
+        edge = State(f"ends ({state.text})")
+        self.settled[edge.text] = state.negated()
+        return edge
 
     def ever(self, term: Term) -> State:
         return State(f"once {term.text}")
@@ -114,8 +124,7 @@ class Conditions(Quantities):
     def enum_varies(self, name: Term, before: Term | None = None) -> State | None:
         if name.declared is None or (before is not None and before.text != name.text):
             return None
-        ends = [f"ends ({name.text} is {value})" for value in name.declared.values]
-        return State(" or ".join(ends), OR)
+        return State(change_of_enum(name.text, name.declared.values), OR)
 
     def enum_stays(self, name: Term, before: Term | None = None) -> State | None:
         state = self.enum_varies(name, before)

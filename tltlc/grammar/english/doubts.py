@@ -2,13 +2,27 @@
 
 from __future__ import annotations
 
+from tltlc.grammar.english.terminals import CHANGES_OF_ENUM
+from tltlc.grammar.mistakes.sentences.vocabulary import LASTING
 from tltlc.grammar.mistakes.sentences.words import Words
 
 
 def takes_one_reading(clause: str, words: Words) -> bool:
     """Whether a clause that patterns make of a sentence may miss its meaning."""
     event, _, answer = clause.removeprefix("keep ").partition(" implies ")
+    if words.find([("before",)]) and " weak_until " in answer:
+        return True  # the event may come at the same step, may have to come, and may be asked for once
+    is_lasting = words.find(LASTING) or words.word(0) == "in"
+    if is_lasting and ("<= previous(" in answer or ">= previous(" in answer) and " and previously " not in event:
+        return True  # the first step may be compared with the one before
     return _denies_its_own_event(event, answer) or (lasts_on(event) and answer.startswith("eventually within "))
+
+
+def is_english_alone(words: Words) -> bool:
+    """Whether words have a meaning in English that other helps do not know: `shift changes`, `reach a before b`."""
+    pairs = ((words.declared(at), words.word(at + 1)) for at in range(len(words) - 1))
+    is_change = any(known and known.type == "enum" and word in CHANGES_OF_ENUM for known, word in pairs)
+    return is_change or (words.word(0) == "reach" and words.find([("before",)]) is not None)
 
 
 def _denies_its_own_event(event: str, answer: str) -> bool:

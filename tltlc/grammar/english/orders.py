@@ -133,19 +133,20 @@ class Orders(Rules):
         if between is None or avoided.level > ATOM:
             return None
         goal = " then ".join(state.at(OR) for state in goals.states)
-        return [
-            Reading((f"reach {goal}", f"avoid {avoided.text}"), f"if `{avoided.text}` must hold at no step of play"),
-            Reading(between.clauses, "if at no step between the goals"),
-        ]
+        never = f"if `{avoided.text}` must hold at no step of play"
+        return [Reading((f"reach {goal}", f"avoid {avoided.text}"), never), *between]
 
-    def goals_without_between(self, goals: Goals, avoided: State) -> Reading | None:
-        *before, goal = goals.states
-        if not before or any(state.text == avoided.text for state in goals.states):
+    def goals_without_between(self, goals: Goals, avoided: State) -> list[Reading] | None:
+        """Return the readings of `reach a then b with no c in between`: the first and the last step count, or not."""
+        first, last = goals.states[0], goals.states[-1]
+        if len(goals.states) < 2 or any(state.text == avoided.text for state in goals.states):
             return None
-        for state in reversed(before):
-            following = f"next ({avoided.negated().at(ATOM)} until {goal.at(ATOM)})"
-            goal = joined([state, State(following)], "and")
-        return Reading((f"reach {goal.text}",))
+        free = [joined([state, avoided.negated()], "and") for state in goals.states]
+        which, between = f"`{first.text}` to `{last.text}`", f"`{first.text}` and `{last.text}`"
+        return [
+            Reading((_without(free, avoided),), f"if no step from {which} may have it, these two included"),
+            Reading((_without([first, *free[1:-1], last], avoided),), f"if only no step between {between} may have it"),
+        ]
 
     def change_alone(self, state: State) -> _Found:
         """Return the goal of `phase becomes results`, which no word makes a rule."""
@@ -228,6 +229,15 @@ class Orders(Rules):
 
     def never_goes(self, early: State, late: State) -> _Found:
         return self.never_follows(late, early)
+
+
+def _without(states: Sequence[State], avoided: State) -> str:
+    """Return the clause of goals with no step between one and the next that has something."""
+    *before, goal = states
+    for state in reversed(before):
+        following = f"next ({avoided.negated().at(ATOM)} until {goal.at(ATOM)})"
+        goal = joined([state, State(following)], "and")
+    return f"reach {goal.text}"
 
 
 def _denied_after(when: When, event: Event, answers: list[Asked]) -> list[Reading] | None:

@@ -106,6 +106,22 @@ class Periods(Totals):
     def most_in_each(self, number: Term, term: Term, period: Period) -> _Found:
         return self.count_in_each(Counted(State(term.text), "<=", number.text), period)
 
+    def number_in_each(self, *parts: Term | str | Period) -> _Found:
+        """Return the readings of `one attack per jump`: at most one, or at least one."""
+        number = next((part if isinstance(part, str) else part.text for part in parts[:2] if _is_number(part)), "")
+        term, period = next(part for part in parts if isinstance(part, Term) and part.kind == "BOOL"), parts[-1]
+        assert isinstance(period, Period)
+        most = self.count_in_each(Counted(State(term.text), "<=", number), period)
+        least = self._least_in_each(Counted(State(term.text), ">=", number), period)
+        known = most if isinstance(most, list) else [most] if isinstance(most, Reading) else []
+        if not known or not isinstance(least, Reading):
+            return None
+        also = f", and {known[0].condition.removeprefix('if ')}" if known[0].condition else ""
+        return [
+            replace(known[0], condition=f"if at most {number}{also}"),
+            replace(least, condition=f"if at least {number}, asked for where one ends"),
+        ]
+
     def in_each_count(self, period: Period, counted: Counted) -> _Found:
         return self.count_in_each(counted, period)
 
@@ -130,6 +146,19 @@ class Periods(Totals):
         return [
             replace(inside, condition=f"if each `{state.text}` begins a new count"),
             replace(together, condition=f"if all steps with `{state.text}` count together"),
+        ]
+
+    def so_often_while(self, term: Term, number: str, state: State) -> _Found:
+        """Return the readings of `jump twice while airborne`: a goal in one stretch or in all of them, or a limit."""
+        counted = Counted(State(term.text), ">=", number)
+        goal, limit = _while(counted, state), _while(replace(counted, sign="<="), state)
+        together = self.limit_count(Counted(State(f"(begins {term.text}) and {state.at(AND)}", AND), ">=", number))
+        if goal is None or limit is None or not isinstance(together, Reading) or number == "1" or state.level > ATOM:
+            return None
+        return [
+            replace(goal, condition=f"if it is a goal, in one stretch with `{state.text}`"),
+            replace(together, condition=f"if it is a goal, and all steps with `{state.text}` count together"),
+            replace(limit, condition=f"if no more are allowed in each stretch with `{state.text}`"),
         ]
 
     def while_count(self, when: When, event: Event, counted: Counted) -> _Found:
@@ -273,13 +302,14 @@ class Periods(Totals):
 
     def reach_before(self, goal: State, end: State) -> _Found:
         a, b = goal.at(ATOM), end.negated().at(ATOM)
+        own, same = joined([goal, end.negated()], "and").at(ATOM), f"`{end.text}` may come at the same step"
         return [
-            Reading((f"require {b} until {a}",), f"if it must come, and `{end.text}` not before it"),
-            Reading((f"require {b} weak_until {a}",), "if it need not come"),
-            Reading(
-                (f"reach {goal.at(AND)} then {end.at(AND)}",), f"if `{end.text}` must follow, and may come earlier, too"
-            ),
-        ]
+            Reading((f"require {b} until {own}",), f"if it must come, and `{end.text}` at no step before it or with it"),
+            Reading((f"require {b} until {a}",), f"if it must come, and {same}"),
+            Reading((f"require {b} weak_until {a}",), f"if it need not come, and {same}"),
+            Reading((f"reach {goal.at(AND)} then {end.at(AND)}",),
+                    f"if `{end.text}` must follow at a later step, and may come earlier, too"),
+        ]  # fmt: skip
 
 
 def _times_since(counted: Counted, event: State) -> State | None:
@@ -290,6 +320,10 @@ def _times_since(counted: Counted, event: State) -> State | None:
         return None
     count = f"times_since({without_brackets(counted.state.text)}, {without_brackets(event.text)})"
     return State(f"{count} {sign} {number}", ATOM, f"{count} {NEGATED_SIGN[sign]} {number}")
+
+
+def _is_number(part: Term | str | Period) -> bool:
+    return isinstance(part, str) or (isinstance(part, Term) and part.kind == "NUMBER")
 
 
 def _limited_since(counted: Counted, event: State) -> Reading | None:

@@ -55,6 +55,11 @@ PHRASES: Final[Mapping[str, str]] = {
     "until": "until|till|up until",
     "before": "before",
     "second": "second|further|other|another|new|more|next",
+    "above": "above|over|more than|higher than",
+    "below": "below|under|less than|lower than",
+    "passed": "have passed|has passed|passed|are over|is over|have elapsed|elapsed|later",
+    "whichever": "whichever comes first|whichever is first|whichever is earlier|whichever happens first|"
+    "whichever comes earlier|whichever is sooner|whichever comes sooner",
     "before_that": "before|first|beforehand|earlier|before that",
     "between": "between|in between",
     "never": "never|never ever|at no time|under no circumstances|not ever",
@@ -123,8 +128,8 @@ PHRASES: Final[Mapping[str, str]] = {
     "at": "at|in",
     "remain": "stay|stays|remain|remains|stay so|stays so|stay there|stays there|stay that way|stays that way|"
     "remains so|stay at|stays at|remain at|remains at|stay like that|stay in|stays in",
-    "highest": "highest|maximum|greatest|largest|peak|max|highest value of|maximum of|max of",
-    "lowest": "lowest|minimum|smallest|least|min|lowest value of|minimum of|min of",
+    "highest": "highest|maximum|greatest|largest|peak|max|highest value of|maximum of|max of|highest value",
+    "lowest": "lowest|minimum|smallest|least|min|lowest value of|minimum of|min of|lowest value",
     "so_far": "so far|until now|until then|ever|up to now|up to then|yet|till now",
     "at_most_for": "for at most|for no more than|for no longer than|no longer than|at most for|not longer than|"
     "for up to|"
@@ -217,7 +222,7 @@ PHRASES: Final[Mapping[str, str]] = {
     "must remain constant|must be constant|has to stay the same|"
     "is unchanged|stays constant|remains unchanged|stays unchanged|unchanged|constant|"
     "remains constant|keeps its value|is constant|frozen|is frozen|stays frozen|stays put|not change|fixed|is fixed",
-    "changes": "changes|change",
+    "changes": "changes|change|changed|varies",
     "come": "go on|come on|be triggered|be raised|sound|ring|start|begin|come|trigger|appear|take place|be reached",
     "go_off": "go off|goes off|went off",
     "move": "go|goes|change|changes|switch|switches|jump|jumps|move|moves|pass|passes|transition|transitions|turn|"

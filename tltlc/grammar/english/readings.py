@@ -7,9 +7,9 @@ from itertools import islice, product
 from typing import Any, Final
 
 from tltlc.core.record import record
-from tltlc.grammar.english.again import Again
-from tltlc.grammar.english.changes import Changes
+from tltlc.grammar.english.bounds import Bounds
 from tltlc.grammar.english.events import Crossing
+from tltlc.grammar.english.extremes import Extremes
 from tltlc.grammar.english.forms import Form, Part, forms
 from tltlc.grammar.english.periods import Periods
 from tltlc.grammar.english.rules import Reading, Rules
@@ -38,7 +38,7 @@ _MOST: Final = 64
 """The most ways in which the parts of one phrase are put together."""
 
 
-class Meanings(Periods, Again, Changes, Transitions):
+class Meanings(Periods, Bounds, Extremes, Transitions):
     """The meanings of all rules of the grammar."""
 
 

@@ -52,13 +52,21 @@ class Sequels(Stretches):
         if state.text.startswith("not "):
             return self.never_until(state.negated(), end)
         a, b = self.settled.get(state.text, state), end
-        weak, strong = (State(f"({b.negated().at(ATOM)} {name} {a.at(ATOM)})") for name in ("weak_until", "until"))
-        first = f"if `{a.text}` must come before `{b.text}`, or at the same step"
-        anew = f"{first}, anew from each step with the condition"
+        free, own = b.negated().at(ATOM), joined([a, b.negated()], "and")
+        weak, strong, strict = (
+            State(f"({free} {name} {goal.at(ATOM)})")
+            for name, goal in (("weak_until", a), ("until", a), ("until", own))
+        )
+        begun, each = "asked where the condition begins", "asked anew at each step with the condition"
+        same_step = f"before `{b.text}` or at the same step"
+        first = f"if `{a.text}` must come {same_step}, and neither need come"
+        surely = f"if `{a.text}` must come, {same_step}"
+        strictly = f"if `{a.text}` must come, at an earlier step than `{b.text}`"
         return [
-            Asked(Answer("now", weak), f"{first}, and neither need come", is_formula=True, is_once=True),
-            Asked(Answer("now", strong), f"if `{a.text}` must come, and `{b.text}` not before it", True, is_once=True),
-            Asked(Answer("now", weak), anew, is_formula=True),
+            Asked(Answer("now", weak), f"{first}; {begun}", True, is_once=True),
+            Asked(Answer("now", strong), f"{surely}; {begun}", True, is_once=True),
+            Asked(Answer("now", weak), f"{first}; {each}", True),
+            Asked(Answer("now", strict), f"{strictly}; {each}", True),
         ]
 
     def only_after_then(self, state: State, first: State) -> list[Asked]:
@@ -113,9 +121,9 @@ class Sequels(Stretches):
         return [
             Reading(
                 (f"require {free} weak_until {a.at(ATOM)}",),
-                f"if no `{b.text}` may come before the first `{a.text}`",
+                f"if no `{b.text}` may come before the first `{a.text}`, and may come at the same step",
             ),
-            Reading((f"require {free} until {a.at(ATOM)}",), f"if `{a.text}` must come, too"),
+            Reading((f"require {free} until {a.at(ATOM)}",), f"if `{a.text}` must come, before `{b.text}` or with it"),
             Reading(
                 (f"keep {b.at(OR)} implies previously (not {b.at(ATOM)} since {own.at(ATOM)})",),
                 f"if each `{b.text}` needs its own `{a.text}`",

@@ -110,9 +110,6 @@ class Stretches(Intervals, Orders):
             return None
         return self.first(when_too, joined([one, other], "and"), answers)
 
-    def at_condition(self, state: State, answers: list[Asked]) -> _Found:
-        return self.first("when", state, answers)
-
     def followed_by(self, event: Event, answers: list[Asked]) -> _Found:
         if any(asked.answer.kind == "now" and not asked.is_formula for asked in answers):
             return None  # at the same step, or later

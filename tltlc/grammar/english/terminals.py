@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+import re
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Final
 
 from tltlc.core.record import record
@@ -28,6 +29,7 @@ _LETTERS: Final = {"Y": "previously", "O": "once", "H": "historically", "S": "si
 """Maps the letters of logic for the past to words."""
 UNKNOWN: Final = "UNKNOWN"
 """The kind of a word that no sentence of the grammar has."""
+CHANGES_OF_ENUM: Final = frozenset(("changes", "changed", "varies", "change"))
 _PREVIOUS: Final = ("previous", "prev")
 _EQUALITIES: Final = ("EQUALS", "UNEQUAL", "EQUAL")
 _BEFORE_VALUES: Final = frozenset(
@@ -166,7 +168,7 @@ def _unit(word: str) -> str:
 
 def _name(words: Words) -> Term | None:
     """Return the terminal of a name, perhaps with arguments."""
-    name, text = words[0].text, words.text
+    name, text = words[0].text, _with_changes(words)
     declared = words.names.names.get(name)
     if declared is None:
         inner = words[2:-1] if len(words) > 2 else words[:0]
@@ -194,6 +196,22 @@ def _name(words: Words) -> Term | None:
     if declared.type == "bool" or declared.keyword in ("predicate", "let"):
         return Term("BOOL", text, declared)
     return Term("REAL", text, declared) if declared.type else None
+
+
+def change_of_enum(name: str, values: Iterable[str]) -> str:
+    """Return the condition of an enum with another value than at the step before."""
+    return " or ".join(f"ends ({name} is {value})" for value in values)
+
+
+def _with_changes(words: Words) -> str:
+    """Return the text of a name, with a condition for each `shift changes` in its arguments."""
+    text = words.text
+    for name, declared in words.names.names.items():
+        if declared.type == "enum" and name in text:
+            condition = change_of_enum(name, declared.values)
+            text = re.sub(rf"(?<=[(,]) *{name} +(?:{'|'.join(CHANGES_OF_ENUM)})(?= *[,)])", f" {condition}", text)
+            text = text.replace("( ", "(")
+    return text
 
 
 def _value_of(declared: DeclaredName | None, text: str) -> Term:

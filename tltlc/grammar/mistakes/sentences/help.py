@@ -10,7 +10,7 @@ from tltlc.diagnostics.diagnostic import Diagnostic, Fix, replacement_fix
 from tltlc.grammar.english.clauses import plain_text
 from tltlc.grammar.english.notes import notes, reading_notes
 from tltlc.grammar.english.readings import sentence, sentence_forms
-from tltlc.grammar.english.doubts import takes_one_reading
+from tltlc.grammar.english.doubts import is_english_alone, takes_one_reading
 from tltlc.grammar.english.rules import Reading
 from tltlc.grammar.english.terminals import CALLED
 from tltlc.grammar.lexer import END, tokenize
@@ -99,6 +99,7 @@ def _with_reading(
     words = sentence_words(failure)
     is_english = (
         words.find(_ENGLISH_ALONE) is not None
+        or is_english_alone(words)
         or any(map(counts_in_periods, (words, with_names(words))))
         or (is_whole and _may_miss(failure, known.fixes[0], words))
     )
