@@ -128,6 +128,7 @@ READINGS: Mapping[str, tuple[Meaning, ...]] = {
         lambda t: follows(a(t), b(t)),
     ),
     "reach a before b": (
+        lambda t: any(now and not any(b(t)[: i + 1]) for i, now in enumerate(a(t))),
         lambda t: any(a(t)) and not any(b(t)[: a(t).index(True)]),
         lambda t: not any(b(t)[: a(t).index(True)]) if any(a(t)) else not any(b(t)),
         lambda t: any(now and any(b(t)[i + 1 :]) for i, now in enumerate(a(t))),

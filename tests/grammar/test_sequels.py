@@ -52,43 +52,42 @@ ONE_READING = {
     "when fire, never spray unless boss_dead": ["keep fire implies not spray or boss_dead"],
 }
 
+EARLIER = "asked where the condition begins"
+ANEW = "asked anew at each step with the condition"
+BEFORE = [
+    (
+        "keep begins fire implies (not boss_dead weak_until spray)",
+        f"if `spray` must come before `boss_dead` or at the same step, and neither need come; {EARLIER}",
+    ),
+    (
+        "keep begins fire implies (not boss_dead until spray)",
+        f"if `spray` must come, before `boss_dead` or at the same step; {EARLIER}",
+    ),
+    (
+        "keep fire implies (not boss_dead weak_until spray)",
+        f"if `spray` must come before `boss_dead` or at the same step, and neither need come; {ANEW}",
+    ),
+    (
+        "keep fire implies (not boss_dead until (spray and not boss_dead))",
+        f"if `spray` must come, at an earlier step than `boss_dead`; {ANEW}",
+    ),
+]
+BEFORE_FROM_EDGE = [
+    *BEFORE[:2],
+    (
+        "keep begins fire implies (not boss_dead until (spray and not boss_dead))",
+        f"if `spray` must come, at an earlier step than `boss_dead`; {ANEW}",
+    ),
+]
 SEVERAL_READINGS = {
+    "fire implies spray before boss_dead": BEFORE,
     "keep begins fire implies spray before ends fire": [
-        (
-            "keep begins fire implies (not ends fire weak_until spray)",
-            "if `spray` must come before `ends fire`, or at the same step, and neither need come",
-        ),
-        ("keep begins fire implies (not ends fire until spray)", "if `spray` must come, and `ends fire` not before it"),
+        (clause.replace("boss_dead", "ends fire"), condition.replace("boss_dead", "ends fire"))
+        for clause, condition in BEFORE_FROM_EDGE
     ],
-    "when fire, spray before boss_dead": [
-        (
-            "keep begins fire implies (not boss_dead weak_until spray)",
-            "if `spray` must come before `boss_dead`, or at the same step, and neither need come",
-        ),
-        ("keep begins fire implies (not boss_dead until spray)", "if `spray` must come, and `boss_dead` not before it"),
-        (
-            "keep fire implies (not boss_dead weak_until spray)",
-            "if `spray` must come before `boss_dead`, or at the same step, anew from each step with the condition",
-        ),
-    ],
-    "spray before boss_dead once fire begins": [
-        (
-            "keep begins fire implies (not boss_dead weak_until spray)",
-            "if `spray` must come before `boss_dead`, or at the same step, and neither need come",
-        ),
-        ("keep begins fire implies (not boss_dead until spray)", "if `spray` must come, and `boss_dead` not before it"),
-    ],
-    "each fire needs spray before boss_dead": [
-        (
-            "keep begins fire implies (not boss_dead weak_until spray)",
-            "if `spray` must come before `boss_dead`, or at the same step, and neither need come",
-        ),
-        ("keep begins fire implies (not boss_dead until spray)", "if `spray` must come, and `boss_dead` not before it"),
-        (
-            "keep fire implies (not boss_dead weak_until spray)",
-            "if `spray` must come before `boss_dead`, or at the same step, anew from each step with the condition",
-        ),
-    ],
+    "when fire, spray before boss_dead": BEFORE,
+    "spray before boss_dead once fire begins": BEFORE_FROM_EDGE,
+    "each fire needs spray before boss_dead": BEFORE,
     "when fire begins, spray before boss_dead within 3 s": [
         (
             "keep begins fire implies (not boss_dead until spray) and eventually within 3 s spray",
@@ -115,8 +114,11 @@ SEVERAL_READINGS = {
         ),
     ],
     "spray must come before boss_dead": [
-        ("require not boss_dead weak_until spray", "if no `boss_dead` may come before the first `spray`"),
-        ("require not boss_dead until spray", "if `spray` must come, too"),
+        (
+            "require not boss_dead weak_until spray",
+            "if no `boss_dead` may come before the first `spray`, and may come at the same step",
+        ),
+        ("require not boss_dead until spray", "if `spray` must come, before `boss_dead` or with it"),
         (
             "keep boss_dead implies previously (not boss_dead since (spray and not boss_dead))",
             "if each `boss_dead` needs its own `spray`",
@@ -317,8 +319,8 @@ def test_two_comparisons_of_a_number_with_fractions_are_explained() -> None:
 
 def test_a_condition_that_lasts_asks_at_each_step_for_what_must_come_first() -> None:
     note = "each step with `fire` asks for `spray` anew; write `begins` before it if one is enough each time"
-    assert help_of("when fire, spray before boss_dead").splitlines()[1:] == [note]
-    assert help_of("when fire begins, spray before boss_dead").splitlines()[1:] == []
+    assert help_of("when fire, no boss_dead before spray").splitlines()[1:] == [note]
+    assert help_of("when fire begins, no boss_dead before spray").splitlines()[1:] == []
     assert help_of("when fire, spray until boss_dead").splitlines()[1:] == []
 
 

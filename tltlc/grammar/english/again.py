@@ -6,7 +6,6 @@ from tltlc.grammar.english.answers import Asked
 from tltlc.grammar.english.events import Event, as_state
 from tltlc.grammar.english.rules import Reading, When, are_simple, begun_text
 from tltlc.grammar.english.sequels import Sequels
-from tltlc.grammar.english.terminals import Term
 from tltlc.grammar.mistakes.declared_names import DeclaredNames
 from tltlc.grammar.mistakes.sentences.states import AND, ATOM, OR, State
 
@@ -105,7 +104,7 @@ class Again(Sequels):
         return formula.startswith(denied) or formula in self._seconds
 
     def _again_until(self, event: Event, answers: list[Asked]) -> _Found:
-        """Return the readings of `after a, no a until b`; None of `after a, no second b until c`, which lets one pass."""
+        """Return the readings of `after a, no a until b`; None of `after a, no second b until c`, of two events."""
         state, until = as_state(event), answers[0].until
         if state is None or until is None or answers[1:] or not are_simple(state):
             return None

@@ -108,7 +108,7 @@ class Changes(Rules):
         return self._same_while(when, event, answers) or super().last(answers, when, event)
 
     def _same_while(self, when: When, event: Event, answers: list[Asked]) -> list[Reading] | None:
-        """Return the readings of `while a, b stays the same`, and of `while a, b never falls`: is the first step of a compared with the one before?"""
+        """Return the readings of `while a, b stays the same` and `while a, b never falls`: from which step on?"""
         state, asked = as_state(event), answers[0]
         same, kind = asked.answer.state, asked.answer.kind
         is_kept = kind in ("now", "always") and not asked.is_formula and asked.answer.keyword != "reach"

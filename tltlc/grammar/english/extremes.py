@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from typing import Literal
 
-from tltlc.core.record import record, replace
+from tltlc.core.record import record
 from tltlc.grammar.english.changes import Changes
 from tltlc.grammar.english.quantities import MIRRORED, Change, Number, comparison
-from tltlc.grammar.english.rules import Reading
 from tltlc.grammar.english.terminals import Term
 from tltlc.grammar.mistakes.sentences.states import State
 
@@ -51,9 +50,3 @@ class Extremes(Changes):
             return self.highest(term) if extreme.name == "highest" else self.lowest(term)
         since = self.highest_since if extreme.name == "highest" else self.lowest_since
         return since(term, extreme.event)
-
-    def bare(self, state: State) -> Reading | list[Reading] | None:
-        readings = super().bare(state)
-        if isinstance(readings, list) and ("highest_since(" in state.text or "lowest_since(" in state.text):
-            return replace(readings[-1], condition="")  # a limit for every step
-        return readings

@@ -122,7 +122,7 @@ def _state_text(event: Expr, source: SourceFile) -> str:
 
 
 def reading_notes(clauses: str, names: DeclaredNames, typed: str) -> tuple[str, ...]:
-    """Return what to know of the numbers in clauses that a sentence may mean: fractions, and steps that a time takes."""
+    """Return what to know of numbers in clauses that a sentence may mean: fractions, and steps that a time takes."""
     source, specs = _written(clauses) or (None, ())
     times: list[str] = []
     if source is not None and "time_holding" not in typed:

@@ -19,6 +19,7 @@ _MOST_GOALS: Final = 8
 _FEWEST_VALUES: Final = 3
 """With two values, `from a to b` may be the only change that is allowed, or the only way to b."""
 
+_Readings = list[Reading]
 _Found = Reading | list[Reading] | None
 
 
@@ -136,7 +137,7 @@ class Orders(Rules):
         never = f"if `{avoided.text}` must hold at no step of play"
         return [Reading((f"reach {goal}", f"avoid {avoided.text}"), never), *between]
 
-    def goals_without_between(self, goals: Goals, avoided: State) -> list[Reading] | None:
+    def goals_without_between(self, goals: Goals, avoided: State) -> _Readings | None:
         """Return the readings of `reach a then b with no c in between`: the first and the last step count, or not."""
         first, last = goals.states[0], goals.states[-1]
         if len(goals.states) < 2 or any(state.text == avoided.text for state in goals.states):

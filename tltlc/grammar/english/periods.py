@@ -108,7 +108,7 @@ class Periods(Totals):
 
     def number_in_each(self, *parts: Term | str | Period) -> _Found:
         """Return the readings of `one attack per jump`: at most one, or at least one."""
-        number = next((part if isinstance(part, str) else part.text for part in parts[:2] if _is_number(part)), "")
+        number = next(_number(part) for part in parts if _number(part))
         term, period = next(part for part in parts if isinstance(part, Term) and part.kind == "BOOL"), parts[-1]
         assert isinstance(period, Period)
         most = self.count_in_each(Counted(State(term.text), "<=", number), period)
@@ -304,7 +304,7 @@ class Periods(Totals):
         a, b = goal.at(ATOM), end.negated().at(ATOM)
         own, same = joined([goal, end.negated()], "and").at(ATOM), f"`{end.text}` may come at the same step"
         return [
-            Reading((f"require {b} until {own}",), f"if it must come, and `{end.text}` at no step before it or with it"),
+            Reading((f"require {b} until {own}",), f"if it must come, and `{end.text}` neither before it nor with it"),
             Reading((f"require {b} until {a}",), f"if it must come, and {same}"),
             Reading((f"require {b} weak_until {a}",), f"if it need not come, and {same}"),
             Reading((f"reach {goal.at(AND)} then {end.at(AND)}",),
@@ -322,8 +322,9 @@ def _times_since(counted: Counted, event: State) -> State | None:
     return State(f"{count} {sign} {number}", ATOM, f"{count} {NEGATED_SIGN[sign]} {number}")
 
 
-def _is_number(part: Term | str | Period) -> bool:
-    return isinstance(part, str) or (isinstance(part, Term) and part.kind == "NUMBER")
+def _number(part: Term | str | Period) -> str:
+    """Return the text of a number; "" for other parts."""
+    return part if isinstance(part, str) else part.text if isinstance(part, Term) and part.kind == "NUMBER" else ""
 
 
 def _limited_since(counted: Counted, event: State) -> Reading | None:

@@ -46,7 +46,8 @@ class Transitions(Rules):
             return replace(keep if is_most else reach, condition="")
         if text.startswith("times("):
             return replace(keep if is_most else reach, condition=self.count_condition(text))
-        if "previous(" in text or "lowest(" in text or "highest(" in text or state.level == RULE or self.is_lasting:
+        is_extreme = any(f"{name}{since}(" in text for name in ("lowest", "highest") for since in ("", "_since"))
+        if "previous(" in text or is_extreme or state.level == RULE or self.is_lasting:
             return replace(keep, condition="")
         if text.startswith("time_holding("):
             return replace(keep, condition="") if is_most else None

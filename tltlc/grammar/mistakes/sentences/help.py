@@ -8,9 +8,9 @@ from typing import Final
 from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import Diagnostic, Fix, replacement_fix
 from tltlc.grammar.english.clauses import plain_text
+from tltlc.grammar.english.doubts import is_english_alone, takes_one_reading
 from tltlc.grammar.english.notes import notes, reading_notes
 from tltlc.grammar.english.readings import sentence, sentence_forms
-from tltlc.grammar.english.doubts import is_english_alone, takes_one_reading
 from tltlc.grammar.english.rules import Reading
 from tltlc.grammar.english.terminals import CALLED
 from tltlc.grammar.lexer import END, tokenize
