@@ -61,6 +61,8 @@ ONE_READING = {
     "after boss_dead, no fire until spray or 5 s": [
         "keep boss_dead implies (always for 5 s not fire) or (not fire weak_until spray)"
     ],
+    # So often with nothing in between.
+    "fire 3 times without spray in between": ["reach times_since((begins fire) and not spray, spray) >= 3"],
     # Where an enum changes.
     "keep health <= value_at(health, phase changes) + 3": [f"keep health <= value_at(health, {VARIES}) + 3"],
     "keep times_since(fire, phase changed) <= 2": [f"keep times_since(fire, {VARIES}) <= 2"],

@@ -122,6 +122,13 @@ class Periods(Totals):
             replace(least, condition=f"if at least {number}, asked for where one ends"),
         ]
 
+    def count_without_between(self, state: State, number: str, avoided: State) -> _Found:
+        """Return the goal of `jump 3 times without landing in between`: no step from the first to the last has it."""
+        if max(state.level, avoided.level) > ATOM or is_negative(state) or begun_text(state) == begun_text(avoided):
+            return None
+        counted = joined([State(f"({begun_text(state)})"), avoided.negated()], "and")
+        return Reading((f"reach times_since({counted.text}, {avoided.text}) >= {number}",))
+
     def in_each_count(self, period: Period, counted: Counted) -> _Found:
         return self.count_in_each(counted, period)
 
