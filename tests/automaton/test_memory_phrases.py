@@ -46,7 +46,7 @@ def _fspa(clause: str) -> Fspa:
         ("keep times(not seen) <= 3", "Keep not seen at most 3 times throughout."),
         ("keep hp >= previous(hp)", "Keep hp >= the previous hp throughout."),
         # These keep their names: they are sums.
-        ("keep times(seen, 9) + times(alarm, 9) <= 3", "Avoid times(seen, 9) + times(alarm, 9) > 3 throughout."),
+        ("keep times(seen, 9) + times(alarm, 9) <= 3", "Keep times(seen, 9) + times(alarm, 9) <= 3 throughout."),
     ],
 )
 def test_formulas_with_memory_read_well(clause: str, english: str) -> None:
