@@ -124,7 +124,7 @@ def test_declared_names_keep_their_meaning() -> None:
 def test_a_name_in_a_comment_is_not_declared() -> None:
     text = f"{NAMES}// signal Y: the second axis, and import nothing\nspec s {{ keep Y seen }}"
     error = parse(SourceFile("a.tltl", text))[1][0]
-    assert error.help == "write `previously seen`"
+    assert error.help == "write `keep previously seen`"
 
 
 @pytest.mark.parametrize("clause", ["keep Y e", "keep has key", "keep a S b"])
