@@ -96,5 +96,6 @@ def test_an_equality_of_a_signal_with_a_whole_range_says_to_declare_an_int() -> 
     assert "true or false" not in (error.help or "")
     assert error.fixes == ()
     assert (
-        error_of("keep lap == 1", "signal lap in [1, 3]\n")[1].help == "write `keep lap <= 1`: the range of `lap` ends there"
+        error_of("keep lap == 1", "signal lap in [1, 3]\n")[1].help
+        == "write `keep lap <= 1`: the range of `lap` ends there"
     )
