@@ -75,21 +75,26 @@ def test_a_time_beside_an_operator_gets_both_bracketings(clause: str, readings: 
 
 
 @pytest.mark.parametrize(
-    "clause",
+    ("clause", "written"),
     [
-        "keep times(hit) within 3 s <= 2",
-        "keep times(hit) in the last 3 s <= 2",
-        "keep within 3 s times(hit) <= 2",
-        "keep times(hit) <= 2 per 3 s",
-        "keep alarm implies times(hit) in any 3 s < 5",
-        "keep times(hit) within 3 s",
+        ("keep times(hit) within 3 s <= 2", "keep times_within(hit, 3 s) <= 2"),
+        ("keep times(hit) in the last 3 s <= 2", "keep times_within(hit, 3 s) <= 2"),
+        ("keep within 3 s times(hit) <= 2", "keep times_within(hit, 3 s) <= 2"),
+        ("keep times(hit) <= 2 per 3 s", "keep times_within(hit, 3 s) <= 2"),
+        ("keep alarm implies times(hit) in any 3 s < 5", "keep alarm implies times_within(hit, 3 s) < 5"),
     ],
 )
-def test_no_clause_counts_within_a_time(clause: str) -> None:
-    assert error_of(clause).help == (
-        "`times(hit)` counts from the first step on, and no short clause can say how often something happens within "
-        "3 s: let the game count, and supply the number"
-    )
+def test_a_count_within_a_time_gets_the_function_that_counts_in_the_last_seconds(clause: str, written: str) -> None:
+    help_, _, note = (error_of(clause).help or "").partition("\n")
+    assert help_ == f"write `{written}`"
+    note_on_window = "`times_within(hit, 3 s)` counts how often it has begun at this step or one of the 30 before"
+    assert note == ("" if "implies" in clause else note_on_window)
+
+
+def test_a_count_within_a_time_without_a_comparison_gets_no_fix() -> None:
+    error = error_of("keep times(hit) within 3 s")
+    assert error.fixes == ()
+    assert "`times_within(hit, 3 s)` is how often `hit` has begun in the last 3 s" in (error.help or "")
 
 
 @pytest.mark.parametrize(

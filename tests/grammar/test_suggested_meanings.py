@@ -263,13 +263,9 @@ def test_a_value_that_an_enum_does_not_have_gets_the_list(clause: str) -> None:
     assert "`idle`, `alert`, `chase`" in (error.help or "")
 
 
-def test_a_count_within_a_time_that_the_language_cannot_say_says_so() -> None:
+def test_a_count_within_a_time_counts_in_the_last_seconds() -> None:
     _, error = error_of("avoid a 3 times within 10 s")
-    assert error.fixes == ()
-    assert error.help == (
-        "`times(a)` counts from the first step on, and no short clause can say how often something happens within "
-        "10 s: let the game count, and supply the number"
-    )
+    assert (error.help or "").splitlines()[0] == "write `avoid times_within(a, 10 s) >= 3`"
 
 
 @pytest.mark.parametrize(
@@ -334,10 +330,19 @@ def test_a_help_shows_the_time_that_was_written(clause: str, names: str) -> None
 
 
 @pytest.mark.parametrize(
-    "clause", ["keep a until 2 s or b", "keep a until 2 s and b", "keep b implies a until 2 s or b"]
+    ("clause", "written"),
+    [
+        ("keep a until 2 s or b", "require (always for 2 s a) or (a weak_until b)"),
+        ("keep c implies a until 2 s or b", "keep c implies (always for 2 s a) or (a weak_until b)"),
+    ],
 )
-def test_a_time_after_until_gets_no_fix_where_more_follows(clause: str) -> None:
+def test_a_time_or_a_state_after_until_ends_what_comes_before(clause: str, written: str) -> None:
     _, error = error_of(clause)
+    assert error.help == f"write `{written}`"
+
+
+def test_a_time_after_until_gets_no_fix_where_more_follows() -> None:
+    _, error = error_of("keep a until 2 s and b")
     assert error.fixes == ()
     assert error.help == "write `always for 2 s a` for `a until 2 s`"
 

@@ -171,11 +171,34 @@ class Intervals(Rules):
         number = int(counted.number) - (counted.sign == "<") if counted.number.isdecimal() else 0
         if counted.sign in ("<=", "<") and number == 1 and counted.state.level == ATOM:
             return _not_again(counted.state, duration)
+        text = f"times_within({counted.state.text}, {duration.text}) {counted.sign} {counted.number}"
+        if counted.sign in ("<=", "<"):
+            return Reading((f"keep {text}",))
         self.limits.append(
-            f"`times({counted.state.text})` counts from the first step on, and no short clause can say how often "
-            f"something happens within {duration.text}: let the game count, and supply the number"
+            f"`times_within({counted.state.text}, {duration.text})` is how often it has begun in the last "
+            f"{duration.text}, and no short clause says that it is so often in each of them: the first "
+            f"{duration.text} have not passed yet"
         )
         return None
+
+    def reach_number_within(self, number: Term | str, state: State, duration: Duration) -> _Found:
+        text = number.text if isinstance(number, Term) else number
+        return self.reach_count_within(Counted(state, ">=", text), duration)
+
+    def reach_times_within(self, state: State, number: str, duration: Duration) -> _Found:
+        return self.reach_count_within(Counted(state, ">=", number), duration)
+
+    def reach_count_within(self, counted: Counted, duration: Duration) -> _Found:
+        state, time = counted.state.text, duration.text
+        if counted.sign in ("<=", "<"):
+            return self.count_within(counted, duration)
+        return [
+            Reading((f"reach times_within({state}, {time}) {counted.sign} {counted.number}",), f"in any {time}"),
+            Reading(
+                (f"require eventually within {time} times({state}) {counted.sign} {counted.number}",),
+                f"in the first {time} of play",
+            ),
+        ]
 
     def avoid_count_within(self, counted: Counted, duration: Duration) -> _Found:
         sign = {">": "<=", ">=": "<"}.get(counted.sign)

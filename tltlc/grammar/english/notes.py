@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from math import ceil, floor
+from math import ceil, floor, inf
 from typing import Final, TypeGuard
 
 from tltlc.core.source import SourceFile
@@ -59,6 +59,8 @@ def _notes(expression: Expr, source: SourceFile, step_s: float) -> Iterator[tupl
             if note and not (part.name == "value_at" and _is_after_event(part, expression, source)):
                 call = source.slice(part.span)
                 yield note.format(*arguments, call=call), (f"{part.name}(",)
+            if part.name == "times_within" and (window := _window_note(part, source, step_s)):
+                yield window, ("times_within(",)
         elif isinstance(part, Unary) and part.op == "begins" and id(part) not in events:
             inner = source.slice(part.operand.span)
             yield f"`begins {inner}` holds only at the first step of `{inner}`, and not at those after it", _BEGINNINGS
@@ -78,6 +80,15 @@ def _notes(expression: Expr, source: SourceFile, step_s: float) -> Iterator[tupl
             note = _of_time(part, source, step_s)
             if note:
                 yield note, ("time_holding",)
+
+
+def _window_note(call: CallExpr, source: SourceFile, step_s: float) -> str:
+    """Return at which steps `times_within(p, 2 s)` counts; nothing where steps differ in length."""
+    length = call.arguments[1].value if len(call.arguments) > 1 else None
+    steps = _steps(length, step_s) if isinstance(length, NumberExpr) else 0
+    if not 0 < steps < inf:
+        return ""
+    return f"`{source.slice(call.span)}` counts how often it has begun at this step or one of the {ceil(steps)} before"
 
 
 def _rule_notes(rule: BinaryExpr, source: SourceFile) -> Iterator[tuple[str, tuple[str, ...]]]:

@@ -53,6 +53,20 @@ class Periods(Totals):
         text = number if isinstance(number, str) else number.text
         return self.counted_since(State(state.text), *(part for part in sign if isinstance(part, str)), text, event)
 
+    def counted_within(self, state: State, *rest: str | Duration) -> State:
+        """Return the condition of `three hits within 5 s`: how often it has begun in the last 5 s."""
+        *sign, number, duration = rest
+        assert isinstance(number, str) and isinstance(duration, Duration)
+        counted = state.text.removeprefix("begins ")
+        return State(f"times_within({counted}, {duration.text}) {sign[0] if sign else '>='} {number}")
+
+    def counted_first_within(self, *parts: str | Term | State | Duration) -> State:
+        *sign, number, state, duration = parts
+        assert isinstance(state, (State, Term)) and isinstance(duration, Duration)
+        text = number if isinstance(number, str) else number.text
+        signs = [part for part in sign if isinstance(part, str)]
+        return self.counted_within(State(state.text), *signs, text, duration)
+
     # Since an event.
 
     def count_since(self, counted: Counted, event: State) -> _Found:
@@ -66,6 +80,8 @@ class Periods(Totals):
         return self.count_since(Counted(State(term.text), sign.text, number.text), event)
 
     def avoid(self, event: Event) -> _Found:
+        if isinstance(event, State) and event.text.startswith("times_within("):
+            return None  # `avoid 3 hits within 5 s` is a rule about a count
         if isinstance(event, State) and event.text.startswith(("times_since(", "total_time(")):
             return Reading((f"keep {event.negated().text}",))
         return super().avoid(event)

@@ -52,9 +52,18 @@ _CLAUSES: Final = {
 `keep … at least` would have to hold at the first step, too, and `reach … at most` always holds there:
 for these, the other clause is meant.
 """
-COUNT_ELSEWHERE: Final = (
-    "counts from the first step on, and no short clause can say how often something happens within {time}: let the "
-    "game count, and supply the number"
+_WITHIN: Final = {
+    **{(keyword, sign): "keep" for keyword in ("keep", "require") for sign in ("<=", "<")},
+    **{(keyword, sign): "avoid" for keyword in ("avoid", "never") for sign in (">=", ">")},
+}
+"""The keywords of clauses for counts within a time, by the keyword that was written and the comparison."""
+_GOAL_WITHIN: Final = (
+    "write `require eventually within {time} times({p}) {sign} {n}` for the first {time} of play, "
+    "`reach times_within({p}, {time}) {sign} {n}` for any {time}"
+)
+COMPARE_COUNT: Final = (
+    "`times_within({p}, {time})` is how often `{p}` has begun in the last {time}: compare it with a number, as in "
+    "`keep times_within({p}, {time}) <= 3`"
 )
 _TWICE: Final = ((">=", "2"), (">", "1"))
 _AT_MOST_ONCE: Final = (("<=", "1"), ("<", "2"))
@@ -144,7 +153,8 @@ def _error(
             clause = _again_within(keyword if is_whole and keyword else role, operand, sign or ">=", count, head)
             if clause and failure.start == "clause":
                 return suggest_rewrite(failure, 0, end, clause, title)
-            help_ = _within_time(keyword if is_whole and keyword else role, operand, sign or ">=", count, head)
+            within = (start, end), keyword if is_whole and keyword else role, operand
+            return _within_time(failure, title, *within, sign or ">=", count, head)
     elif count.number == "1" and (sign or ">=") == ">=" and keyword in ("keep", "reach", "require") and is_whole:
         return suggest_rewrite(failure, 0, end, f"reach {operand}", title)
     elif (form := _CLAUSES.get((keyword, sign))) and is_whole:
@@ -198,7 +208,7 @@ def _timed_comparison(failure: ParseFailure) -> Diagnostic | None:
         operand = text_of(failure, begin + 2, at - 3)
         count = _Count(tokens[at - 2].text, tokens[at - 1].text, time[0].text, begin, at)
         keyword, head = _role(failure, begin) if tokens[time[1]].type == END else ("", "")
-        help_ = _within_time(keyword, operand, count.sign, count, head)
+        return _within_time(failure, title, (begin, time[1]), keyword, operand, count.sign, count, head)
     return failure.error("TLT0101", title, help_, span=tokens[at].span)
 
 
@@ -223,16 +233,43 @@ def _timed_times(failure: ParseFailure) -> Diagnostic | None:
         operator, number = (token.text for token in tokens[sign : sign + 2]) if tokens[sign].type in SIGNS else ("", "")
         count = _Count(operator, number, time[0].text, begin, at)
         keyword, head = _role(failure, min(begin, at)) if tokens[sign + 2 :] == tokens[-1:] else ("", "")
-        help_ = _within_time(keyword, text_of(failure, begin + 2, end - 1), count.sign, count, head)
+        place = min(begin, at), sign + 2 if operator else max(end, time[1])
+        operand = text_of(failure, begin + 2, end - 1)
+        return _within_time(failure, title, place, keyword, operand, operator, count, head)
     return failure.error("TLT0101", title, help_, span=tokens[at].span)
 
 
-def _within_time(keyword: str, operand: str, sign: str, count: _Count, head: str) -> str:
-    """Return the help for a count within a time, such as `never seen twice within 10 s`."""
+def _within_time(
+    failure: ParseFailure,
+    title: str,
+    place: tuple[int, int],
+    keyword: str,
+    operand: str,
+    sign: str,
+    count: _Count,
+    head: str,
+) -> Diagnostic:
+    """Return the error for a count within a time, such as `never seen twice within 10 s`, at a place.
+
+    ``keyword`` is that of the clause if the count is all of it, and ``head`` its quantifier.
+    """
+    tokens, (start, end) = failure.tokens, place
     clause = _again_within(keyword, operand, sign, count, head)
-    if clause:
-        return f"write `{clause}`"
-    return f"`times({operand})` {COUNT_ELSEWHERE.format(time=count.time)}"
+    if keyword == "reach" and sign in (">=", ">") and not clause:
+        help_ = _GOAL_WITHIN.format(p=operand, sign=sign, n=count.number, time=count.time)
+        return failure.error("TLT0101", title, help_, span=span_of(tokens[start:end]))
+    comparison = f"times_within({operand}, {count.time}) {sign} {count.number}"
+    if not clause and (keyword, sign) in _WITHIN:
+        clause = " ".join(filter(None, (_WITHIN[keyword, sign], head, comparison)))
+    rewrite = None
+    if clause and failure.start == "clause":
+        rewrite = suggest_rewrite(failure, 0, len(tokens) - 1, clause, title)
+    elif sign and count.number and not keyword:
+        rewrite = suggest_rewrite(failure, start, end, comparison, title)
+    if rewrite is not None:
+        return rewrite
+    help_ = f"write `{clause}`" if clause else COMPARE_COUNT.format(p=operand, time=count.time)
+    return failure.error("TLT0101", title, help_, span=span_of(tokens[start:end]))
 
 
 def _again_within(keyword: str, operand: str, sign: str, count: _Count, head: str) -> str:

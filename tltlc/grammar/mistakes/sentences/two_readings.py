@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from tltlc.grammar.mistakes.counts_in_words import COUNT_ELSEWHERE
+from tltlc.grammar.mistakes.counts_in_words import COMPARE_COUNT
 from tltlc.grammar.mistakes.sentences.answers import answer_of
 from tltlc.grammar.mistakes.sentences.kinds import call_end
 from tltlc.grammar.mistakes.sentences.rules import COUNTED, condition_of
@@ -159,7 +159,7 @@ def _counted_in_time(words: Words) -> str | None:
     time = None if found is None else words.time(found[0] + len(found[1]))
     if not time or words[0].text != "times":
         return None
-    return f"`{words[: call_end(words, 0)].text}` {COUNT_ELSEWHERE.format(time=time[0].text)}"
+    return COMPARE_COUNT.format(p=words[2 : call_end(words, 0) - 1].text, time=time[0].text)
 
 
 def _unknown_value(words: Words) -> str | None:
