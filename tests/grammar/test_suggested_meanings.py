@@ -329,22 +329,16 @@ def test_a_help_shows_the_time_that_was_written(clause: str, names: str) -> None
     assert error.help == "write `eventually within 3 s a` for `a within 3 s`"
 
 
-@pytest.mark.parametrize(
-    ("clause", "written"),
-    [
-        ("keep a until 2 s or b", "require (always for 2 s a) or (a weak_until b)"),
-        ("keep c implies a until 2 s or b", "keep c implies (always for 2 s a) or (a weak_until b)"),
-    ],
-)
-def test_a_time_or_a_state_after_until_ends_what_comes_before(clause: str, written: str) -> None:
-    _, error = error_of(clause)
-    assert error.help == f"write `{written}`"
-
-
 def test_a_time_after_until_gets_no_fix_where_more_follows() -> None:
     _, error = error_of("keep a until 2 s and b")
     assert error.fixes == ()
     assert error.help == "write `always for 2 s a` for `a until 2 s`"
+
+
+@pytest.mark.parametrize("clause", ["keep a until 2 s or b", "keep a until b or 2 s", "keep a until (b or 2 s)"])
+def test_a_time_or_an_event_ends_what_is_asked_for_until_then(clause: str) -> None:
+    (fixed,) = suggestions(clause)
+    check(fixed, lambda t: all((a(t)[: b(t).index(True)] if any(b(t)) else a(t))[:2]))
 
 
 @pytest.mark.parametrize("clause", ["never a for 2 s", "avoid a for 2 s", "avoid for 2 s a"])
