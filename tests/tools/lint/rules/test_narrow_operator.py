@@ -48,6 +48,17 @@ def readings(clause: str) -> list[str]:
             "keep a implies (eventually b) and c and x > 3",
         ),
         (
+            "keep a implies b weak_until c or x > 3",
+            "keep a implies b weak_until (c or x > 3)",
+            "keep a implies (b weak_until c) or x > 3",
+        ),
+        (
+            "keep a implies b and c until x > 3",
+            "keep a implies (b and c) until x > 3",
+            "keep a implies b and (c until x > 3)",
+        ),
+        ("keep b since c or a", "keep b since (c or a)", "keep (b since c) or a"),
+        (
             "keep a implies eventually b or begins c",
             "keep a implies eventually (b or begins c)",
             "keep a implies (eventually b) or begins c",
@@ -110,3 +121,11 @@ def test_no_reading_is_named_in_which_the_past_contains_later_steps(clause: str)
     typed, part = (compile_text(block(text, before=BEFORE))[0] for text in (clause, narrow))
     assert compare(typed, part).relation == "equivalent"
     assert "TLT0446" not in codes(block(narrow, before=BEFORE))
+
+
+@pytest.mark.parametrize(
+    "clause",
+    ["keep a implies b until (c or x > 3)", "keep a implies (b and c) until x > 3", "keep (b until c) or always a"],
+)
+def test_brackets_show_how_far_an_infix_word_applies(clause: str) -> None:
+    assert "TLT0446" not in codes(block(clause, before=BEFORE))

@@ -15,6 +15,7 @@ from tltlc.tools.lint.rule import LintRule, RuleFinding
 
 _CHAINS: Final = ("and", "or")
 _ORDERED: Final = ("U", "W", "since")
+_INFIX_WORDS: Final = ("until", "weak_until", "since")
 _FUTURE_WORDS: Final = ("eventually", "always")
 _PAST_WORDS: Final = ("once", "historically")
 _FUTURE: Final = ("F", "G", "X", "N", "U", "W", "R", "M", "then", "within")
@@ -24,6 +25,7 @@ _TEMPORAL: Final = (*_FUTURE, "since", "previously", *_PAST_WORDS)
 def check(view: FileView) -> Iterator[RuleFinding]:
     """Yield a finding for each word that ends before an infix operator, although the operand after it has no such word.
 
+    Also yield one for `until`, `weak_until` and `since` beside `and` and `or`, as in `a until b or c`.
     The words are `eventually` and `always` before `and`, `or`, `until`, `weak_until` and `since`; `once` and
     `historically` before the last three, and with a bound before `or`. The letters F and G are left out, and so are
     operands in brackets. They show how far the word applies.
@@ -49,6 +51,12 @@ def _findings(expression: Expr, source: SourceFile) -> Iterator[RuleFinding]:
                 if following:
                     is_past = operand.op in _PAST_WORDS
                     yield _finding(operand, part.op, following, source, one_reading=is_past and _has_future(part))
+            if isinstance(operand, BinaryExpr) and source.slice(operand.op_span) in _INFIX_WORDS and operands[1:]:
+                before = [] if isinstance(operand.left, GroupExpr) else _states_before(operands[:place])
+                after = [] if isinstance(operand.right, GroupExpr) else operands[place + 1 :]
+                beside = before, [*takewhile(_is_about_one_step, after)]
+                if any(beside):
+                    yield _infix_finding(operand, *beside, source)
 
 
 def _is_narrow(operand: Unary, op: str, source: SourceFile) -> bool:
@@ -102,6 +110,40 @@ def _finding(
     if one_reading:
         help_ = f"write `{narrow}` if you mean this; `{word}` cannot apply to what comes later"
     return RuleFinding(f"`{word}` applies to `{first}` alone", (label,), help_)
+
+
+def _states_before(operands: Sequence[Expr]) -> list[Expr]:
+    """Return the last of these operands that are about one step, in their order."""
+    return [*takewhile(_is_about_one_step, reversed(operands))][::-1]
+
+
+def _infix_finding(
+    operator: BinaryExpr, before: Sequence[Expr], after: Sequence[Expr], source: SourceFile
+) -> RuleFinding:
+    """Return the finding for ``a until b`` between operands of ``and`` or ``or``, which it does not apply to."""
+    start, end = operator.span.start, operator.span.end
+    if before:
+        start = before[0].span.start
+    if after:
+        end = after[-1].span.end
+
+    def text(first: int, last: int) -> str:
+        return " ".join(source.text[first:last].split())
+
+    word = source.slice(operator.op_span)
+    left, right = text(start, operator.left.span.end), text(operator.right.span.start, end)
+    wide = f"{f'({left})' if before else left} {word} {f'({right})' if after else right}"
+    parts = text(start, operator.span.start), text(operator.span.start, operator.span.end), text(operator.span.end, end)
+    narrow = " ".join(filter(None, (parts[0], f"({parts[1]})", parts[2])))
+    operands = [
+        f"`{text(side.span.start, side.span.end)}`"
+        for side, beside in ((operator.left, before), (operator.right, after))
+        if beside
+    ]
+    label = Label(source, Span(start, end), f"read as `{narrow}`")
+    together = "all of them" if before or len(after) > 1 else "both"
+    help_ = f"write `{wide}` if it applies to {together}, `{narrow}` if it does not"
+    return RuleFinding(f"`{word}` applies to {' and '.join(operands)} alone", (label,), help_)
 
 
 def _in_brackets(text: str) -> str:

@@ -1,0 +1,46 @@
+"""TLT0463: rules that ask for their answer anew while a count or a time stays at a number."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+
+from tests.tools.lint.helpers import SIGNALS, accepted_traces, block, codes, findings_in
+
+BEFORE = f"clock 1 Hz\n{SIGNALS}"
+
+
+@pytest.mark.parametrize(
+    "condition",
+    ["times(a) >= 2", "(times_since(a, b) > 1)", "times_within(a, 3 s) >= 2", "time_holding(a) >= 2 s"],
+)
+def test_a_count_or_a_time_as_the_condition_of_a_later_answer_gets_a_finding(condition: str) -> None:
+    text = block(f"keep {condition} implies eventually within 2 s c", before=BEFORE)
+    (finding,) = (item.diagnostic for item in findings_in(text) if item.diagnostic.code == "TLT0463")
+    assert finding.severity == "note"
+    clause = re.findall("`([^`]*)`", finding.help or "")[0]
+    once = block(f"keep {clause}", before=BEFORE)
+    assert "TLT0463" not in codes(once)
+
+
+def test_the_help_asks_once() -> None:
+    typed, once = (
+        accepted_traces(block(f"keep {rule}", before=BEFORE), "abc", 3)
+        for rule in ("times(a) >= 1 implies eventually c", "begins (times(a) >= 1) implies eventually c")
+    )
+    assert typed < once
+
+
+@pytest.mark.parametrize(
+    "rule",
+    [
+        "begins (times(a) >= 2) implies eventually within 2 s c",
+        "times(a) >= 2 implies c",
+        "times(a) >= 2 and begins b implies eventually within 2 s c",
+        "times(a) <= 2 implies eventually within 2 s c",
+        "a implies eventually within 2 s times(c) >= 1",
+    ],
+)
+def test_other_rules_get_none(rule: str) -> None:
+    assert "TLT0463" not in codes(block(f"keep {rule}", before=BEFORE))
