@@ -148,6 +148,10 @@ ONE_READING = {
     "reach fire for 20 s in total": ["reach total_time(fire) >= 20 s"],
     "fire for a total of 20 s": ["reach total_time(fire) >= 20 s"],
     "when fire for 20 s in total, spray": ["keep total_time(fire) >= 20 s implies spray"],
+    # Between two times.
+    "if spray then once between 0.2 s and 1 s fire": [
+        "keep spray implies previously previously once within 0.8 s fire"
+    ],
     # Counts in the last seconds.
     "fire never happens three times within 5 s": ["keep times_within(fire, 5 s) < 3"],
     "avoid more than 2 times fire within 5 s": ["keep times_within(fire, 5 s) <= 2"],
@@ -911,6 +915,8 @@ UNSAYABLE = {
     "every third fire must be spray": "no clause can say what holds at each third `fire`",
     "at some point health is 30 higher than 2 s ago": "no clause can say what `health` was 2 s ago",
     "health never falls by more than 5 in 30 s": "no clause can say what `health` was 30 s ago",
+    "fire between 50 s and 80 s after spray": "a clause that looks 80 s ahead has too many states",
+    "if spray then once between 50 s and 80 s fire": "no short clause says that `fire` was at least 50 s ago",
     "at least 2 fire in any 5 s": "no short clause says that it is so often in each of them",
     "fire => coins@2s > coins": "no clause can say what `coins` is 2 s later or earlier",
 }

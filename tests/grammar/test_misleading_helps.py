@@ -259,7 +259,7 @@ def test_counting_stops_at_a_maximum() -> None:
 def test_both_sides_of_a_comparison_get_a_maximum() -> None:
     assert error_of("keep time_holding(hidden) >= time_holding(seen)").help == (
         "write the greatest value that matters on both sides, e.g. "
-        "`time_holding(hidden, 60 s) >= time_holding(seen, 60 s)`: two times at the maximum are equal"
+        "`time_holding(hidden, 60 s) >= time_holding(seen, 60 s)`: a difference above it is not noticed"
     )
 
 

@@ -69,6 +69,12 @@ def lookup(use: NameExpr | CallExpr, env: Env, kinds: tuple[BindingKind, ...], n
     if use.name == "time" and source.text[span.end :].lstrip().startswith("since "):
         advice = "`time_since` is one word: write it as in `time_since(p) < 5 s`"
         raise problem("TLT0201", title, source, span, advice=advice)
+    if use.name == "time" and isinstance(use, NameExpr):
+        advice = (
+            "`total_time(true)` is the time so far; for a time that the game records, declare it: "
+            "`signal time: time in [0 s, 600 s]`"
+        )
+        raise problem("TLT0201", title, source, span, advice=advice)
     gets_help = len(env.context.log) < _MOST_HINTS
     past = past_words.SYNONYMS.get(use.name) if isinstance(use, CallExpr) and 1 <= len(use.arguments) <= 2 else None
     if past and not closest_name(use.name, env.scope, kinds, env.local):

@@ -85,9 +85,8 @@ def check_closed_pair(left: Quantity, right: Quantity, expr: BinaryExpr, env: En
     """Raise ResolutionError (TLT0321) if both sides of a comparison are recalled and have no maximum."""
     if env.symbolic or not (is_open(left) and is_open(right)):
         return
-    assert left.recall is not None, "an open quantity"
-    noun, text = "counts" if left.recall.is_count else "times", f"{_closed_text(left)} {expr.op} {_closed_text(right)}"
-    advice = f"write the greatest value that matters on both sides, e.g. `{text}`: two {noun} at the maximum are equal"
+    text = f"{_closed_text(left)} {expr.op} {_closed_text(right)}"
+    advice = f"write the greatest value that matters on both sides, e.g. `{text}`: a difference above it is not noticed"
     raise _open_error(left, expr.left, env, advice)
 
 

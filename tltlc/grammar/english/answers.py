@@ -80,14 +80,36 @@ class Answers(Conditions):
     def window_before(self, state: State, window: tuple[Duration, Duration]) -> Asked | None:
         last, first = window
         steps, length = self.steps(last), _difference(last, first)
-        if not steps.is_integer() or not 0 <= steps <= _MOST_PREVIOUS or length is None:
+        if length is None:
+            return None
+        if not steps.is_integer() or not 0 <= steps <= _MOST_PREVIOUS:
+            self.limits.append(
+                f"no short clause says that `{state.text}` was at least {last.text} ago and at most {first.text}: "
+                f"`once within {first.text} {state.at(ATOM)}` is about the {first.text} up to this step, and "
+                f"`time_since({state.text}) >= {last.text}` about the last step with `{state.text}`"
+            )
             return None
         return Asked(Answer("now", State(f"{'previously ' * int(steps)}once within {length.text} {state.at(ATOM)}")))
+
+    def window_ahead(self, window: tuple[Duration, Duration], state: State) -> Asked | None:
+        return self.window_after(state, window)
+
+    def window_ago(self, window: tuple[Duration, Duration], state: State) -> Asked | None:
+        return self.window_before(state, window)
 
     def window_after(self, state: State, window: tuple[Duration, Duration]) -> Asked | None:
         first, last = window
         length = _difference(first, last)
-        if length is None or is_negative(state) or not 0 < self.steps(first) <= MOST_STEPS:
+        if length is None or is_negative(state):
+            return None
+        if not 0 < self.steps(first) <= MOST_STEPS:
+            before = _difference(Duration(f"{self._step_s:g}", "s"), last)
+            if self._step_s and before is not None:
+                self.limits.append(
+                    f"a clause that looks {last.text} ahead has too many states; if the event e does not come again "
+                    f"within {last.text}, this one looks back: `keep ends (once within {before.text} e) implies once "
+                    f"within {length.text} {state.at(ATOM)}`"
+                )
             return None
         text = f"next after {first.text} eventually within {length.text} {state.at(ATOM)}"
         return Asked(Answer("now", State(text)), is_formula=True)

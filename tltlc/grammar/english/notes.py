@@ -32,6 +32,8 @@ _OF_CALLS: Final = {
 }
 """What the functions of the trace so far are, where a reader may expect something else."""
 _OF_EVENTS: Final = ("times_since", "total_time_since", "highest_since", "lowest_since", "value_at")
+_FROM_START: Final = ("times", "total_time", "time_holding")
+"""The functions that may count steps before a rule begins."""
 _MOST_STEPS: Final = 100
 """With more steps, one more or less is hardly noticed."""
 
@@ -71,7 +73,11 @@ def _notes(expression: Expr, source: SourceFile, step_s: float) -> Iterator[tupl
                     f"`{source.slice(part.span)}` asks for {ceil(steps)} steps, the present one among them",
                     ("always", "G["),
                 )
-        elif isinstance(part, BinaryExpr) and part.op == "U":
+        if isinstance(part, BinaryExpr) and part.op in ("U", "W"):
+            counts = [part for part in parts(part.left) if isinstance(part, CallExpr) and part.name in _FROM_START]
+            for count in counts:
+                yield f"`{source.slice(count.span)}` also counts what was before this rule begins", ()
+        if isinstance(part, BinaryExpr) and part.op == "U":
             end = source.slice(part.right.span)
             yield f"write `weak_until` for `until` if play may end before `{end}`", ("weak_until",)
         elif isinstance(part, BinaryExpr) and part.op in ("implies", "within"):
