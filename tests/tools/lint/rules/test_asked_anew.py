@@ -20,7 +20,7 @@ def test_a_count_or_a_time_as_the_condition_of_a_later_answer_gets_a_finding(con
     (finding,) = (item.diagnostic for item in findings_in(text) if item.diagnostic.code == "TLT0463")
     assert finding.severity == "note"
     clause = re.findall("`([^`]*)`", finding.help or "")[0]
-    once = block(f"keep {clause}", before=BEFORE)
+    once = block(clause, before=BEFORE)
     assert "TLT0463" not in codes(once)
 
 
@@ -37,6 +37,10 @@ def test_the_help_asks_once() -> None:
     [
         "begins (times(a) >= 2) implies eventually within 2 s c",
         "times(a) >= 2 implies c",
+        "time_holding(a) >= 2 s implies eventually not a",
+        "times_since(a, b) >= 2 implies eventually b",
+        "times(a) >= 2 implies next eventually b",
+        "times(a) >= 2 implies eventually always b",
         "times(a) >= 2 and begins b implies eventually within 2 s c",
         "times(a) <= 2 implies eventually within 2 s c",
         "a implies eventually within 2 s times(c) >= 1",

@@ -57,6 +57,11 @@ def readings(clause: str) -> list[str]:
             "keep a implies (b and c) until x > 3",
             "keep a implies b and (c until x > 3)",
         ),
+        (
+            "keep a implies previously b or c",
+            "keep a implies previously (b or c)",
+            "keep a implies (previously b) or c",
+        ),
         ("keep b since c or a", "keep b since (c or a)", "keep (b since c) or a"),
         (
             "keep a implies eventually b or begins c",

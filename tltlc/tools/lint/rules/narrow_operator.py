@@ -27,8 +27,8 @@ def check(view: FileView) -> Iterator[RuleFinding]:
 
     Also yield one for `until`, `weak_until` and `since` beside `and` and `or`, as in `a until b or c`.
     The words are `eventually` and `always` before `and`, `or`, `until`, `weak_until` and `since`; `once` and
-    `historically` before the last three, and with a bound before `or`. The letters F and G are left out, and so are
-    operands in brackets. They show how far the word applies.
+    `historically` before the last three, and with a bound before `or`; `previously` before `or`. The letters F and G
+    are left out, and so are operands in brackets. They show how far the word applies.
     """
     for declaration in view.module.declarations:
         if isinstance(declaration, (LetDecl, SpecDecl)):
@@ -49,7 +49,7 @@ def _findings(expression: Expr, source: SourceFile) -> Iterator[RuleFinding]:
             if isinstance(operand, Unary) and _is_narrow(operand, part.op, source):
                 following = [*takewhile(_is_about_one_step, operands[place + 1 :])]
                 if following:
-                    is_past = operand.op in _PAST_WORDS
+                    is_past = operand.op in (*_PAST_WORDS, "previously")
                     yield _finding(operand, part.op, following, source, one_reading=is_past and _has_future(part))
             if isinstance(operand, BinaryExpr) and source.slice(operand.op_span) in _INFIX_WORDS and operands[1:]:
                 before = [] if isinstance(operand.left, GroupExpr) else _states_before(operands[:place])
@@ -66,6 +66,8 @@ def _is_narrow(operand: Unary, op: str, source: SourceFile) -> bool:
         return False
     if word in _FUTURE_WORDS:
         return True
+    if word == "previously":
+        return op == "or"
     return word in _PAST_WORDS and (op in _ORDERED or (op == "or" and operand.bound is not None))
 
 

@@ -7,7 +7,7 @@ from itertools import groupby
 
 from tltlc.diagnostics.diagnostic import Label
 from tltlc.grammar import walk
-from tltlc.grammar.tree import BinaryExpr, TemporalInterval, Unary
+from tltlc.grammar.tree import BinaryExpr, CallExpr, TemporalInterval, Unary
 from tltlc.tools.lint.file_view import FileView, ScopedExpression, SpecView, operand_text
 from tltlc.tools.lint.rule import LintRule, RuleFinding
 
@@ -31,9 +31,11 @@ def check(view: FileView) -> Iterator[RuleFinding]:
 
 
 def _is_state(goal: ScopedExpression) -> bool:
-    """Whether a goal is about one step alone; `begins a` and `once a` are about steps before, too."""
-    is_past = any(isinstance(part.tree, Unary) and part.tree.op != "not" for part in goal.parts())
-    return goal.depends_on_one_step() and not is_past
+    """Whether a goal is about one step alone; `begins a`, `once a` and `previous(x)` are about steps before, too."""
+    trees = [part.tree for part in goal.parts()]
+    is_past = any(isinstance(tree, Unary) and tree.op != "not" for tree in trees)
+    is_change = any(isinstance(tree, CallExpr) and tree.name == "previous" for tree in trees)
+    return goal.depends_on_one_step() and not (is_past or is_change)
 
 
 def _goal_finding(

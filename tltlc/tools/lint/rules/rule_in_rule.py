@@ -28,7 +28,8 @@ def _finding(outer: BinaryExpr, inner: BinaryExpr, view: FileView) -> Iterator[R
         return
 
     def text(start: int, end: int) -> str:
-        return " ".join(view.source.text[start:end].split())
+        lines = view.source.text[start:end].splitlines()
+        return " ".join(" ".join(line.partition("//")[0] for line in lines).split())
 
     condition, conditions = (text(side.span.start, side.span.end) for side in (outer.left, both))
     last = walk.operands(both, "and")[-1].span.start
