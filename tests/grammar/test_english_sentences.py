@@ -148,6 +148,15 @@ ONE_READING = {
     "reach fire for 20 s in total": ["reach total_time(fire) >= 20 s"],
     "fire for a total of 20 s": ["reach total_time(fire) >= 20 s"],
     "when fire for 20 s in total, spray": ["keep total_time(fire) >= 20 s implies spray"],
+    # A second one of several.
+    "after fire and spray, no fire until coins > 3": [
+        "keep fire and spray implies weak_next (not fire weak_until coins > 3)"
+    ],
+    # Just before.
+    "if spray then health > 20 for the last 2 s": ["keep spray implies time_holding(health > 20) >= 2 s"],
+    "never fire while coins > 3 unless spray in the last 5 s": [
+        "keep fire and coins > 3 implies once within 5 s spray"
+    ],
     # Between two times.
     "if spray then once between 0.2 s and 1 s fire": [
         "keep spray implies previously previously once within 0.8 s fire"
@@ -917,6 +926,7 @@ UNSAYABLE = {
     "health never falls by more than 5 in 30 s": "no clause can say what `health` was 30 s ago",
     "fire between 50 s and 80 s after spray": "a clause that looks 80 s ahead has too many states",
     "if spray then once between 50 s and 80 s fire": "no short clause says that `fire` was at least 50 s ago",
+    "if spray then times(fire) <= 3 within 5 s": "`times(fire) <= 3` counts from the first step on",
     "at least 2 fire in any 5 s": "no short clause says that it is so often in each of them",
     "fire => coins@2s > coins": "no clause can say what `coins` is 2 s later or earlier",
 }

@@ -99,6 +99,8 @@ class Again(Sequels):
         state, formula = as_state(event), answers[0].answer.state.text
         if state is None or not answers[0].is_formula:
             return False
+        if _includes_denied(state, formula):
+            return True
         texts = [state.negated().text, f"not {state.at(ATOM).removeprefix('begins ')}"]
         denied = tuple(f"({text} {name} " for text in texts for name in ("weak_until", "until"))
         return formula.startswith(denied) or formula in self._seconds
@@ -106,11 +108,21 @@ class Again(Sequels):
     def _again_until(self, event: Event, answers: list[Asked]) -> _Found:
         """Return the readings of `after a, no a until b`; None of `after a, no second b until c`, of two events."""
         state, until = as_state(event), answers[0].until
+        formula = answers[0].answer.state.text
+        if state is not None and not answers[1:] and _includes_denied(state, formula):
+            return Reading((f"keep {state.at(OR)} implies weak_next {formula}",))
         if state is None or until is None or answers[1:] or not are_simple(state):
             return None
         if begun_text(until[0].negated()) != begun_text(state):
             return None
         return _not_again_until(state, until[1])
+
+
+def _includes_denied(event: State, formula: str) -> bool:
+    """Whether an answer such as `(not a weak_until b)` forbids a part of its own event, as of `a and c`."""
+    parts = {part.removeprefix("begins ") for word in (" and ", " or ") for part in event.text.split(word)}
+    denied = tuple(f"(not {part} {name} " for part in parts for name in ("weak_until", "until"))
+    return len(parts) > 1 and formula.startswith(denied)
 
 
 def _not_again_until(state: State, end: State) -> list[Reading]:

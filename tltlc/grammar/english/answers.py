@@ -63,6 +63,12 @@ class Answers(Conditions):
 
     def within(self, state: State, duration: Duration) -> Asked | list[Asked]:
         state = self.settled.get(state.text, state)
+        if state.text.startswith("times("):
+            self.limits.append(
+                f"`{state.text}` counts from the first step on: write `times_within(p, {duration.text})` to count in "
+                f"the {duration.text} up to a step, or `times_since(p, q)` to count from an event on"
+            )
+            return []
         if is_negative(state):
             never = State(f"not eventually within {duration.text} {state.negated().at(ATOM)}")
             return [
@@ -71,18 +77,25 @@ class Answers(Conditions):
             ]
         return Asked(Answer("within", state, duration.text))
 
+    def eventually_within(self, duration: Duration, state: State) -> Asked | list[Asked]:
+        return self.within(state, duration)
+
     def reach_in_time(self, state: State, duration: Duration) -> Asked:
         return Asked(Answer("within", self.settled.get(state.text, state), duration.text))
 
     def within_before(self, state: State, duration: Duration) -> Asked:
         return Asked(Answer("now", State(f"once within {duration.text} {state.at(ATOM)}")))
 
+    def held_before(self, state: State, duration: Duration) -> Asked:
+        return Asked(Answer("now", State(f"time_holding({state.text}) >= {duration.text}")))
+
     def window_before(self, state: State, window: tuple[Duration, Duration]) -> Asked | None:
         last, first = window
         steps, length = self.steps(last), _difference(last, first)
         if length is None:
             return None
-        if not steps.is_integer() or not 0 <= steps <= _MOST_PREVIOUS:
+        is_known = last.is_steps or bool(self._step_s)
+        if not is_known or not steps.is_integer() or not 0 <= steps <= _MOST_PREVIOUS:
             self.limits.append(
                 f"no short clause says that `{state.text}` was at least {last.text} ago and at most {first.text}: "
                 f"`once within {first.text} {state.at(ATOM)}` is about the {first.text} up to this step, and "
@@ -103,11 +116,11 @@ class Answers(Conditions):
         if length is None or is_negative(state):
             return None
         if not 0 < self.steps(first) <= MOST_STEPS:
-            before = _difference(Duration(f"{self._step_s:g}", "s"), last)
-            if self._step_s and before is not None:
+            before = round(self.steps(last)) - 1
+            if self._step_s and before > 0:
                 self.limits.append(
                     f"a clause that looks {last.text} ahead has too many states; if the event e does not come again "
-                    f"within {last.text}, this one looks back: `keep ends (once within {before.text} e) implies once "
+                    f"within {last.text}, this one looks back: `keep ends (once within {before} steps e) implies once "
                     f"within {length.text} {state.at(ATOM)}`"
                 )
             return None
@@ -119,6 +132,9 @@ class Answers(Conditions):
             Asked(Answer("within", joined([state, asked.answer.state], "and"), duration.text), asked.condition)
             for asked in _until(kept, end)
         ]
+
+    def within_and_until(self, state: State, duration: Duration, end: State) -> list[Asked]:
+        return self.within_then_until(state, duration, state, end)
 
     def within_then_lasting(self, state: State, duration: Duration, kept: State, length: Duration) -> Asked:
         lasting = State(f"always for {length.text} {kept.at(ATOM)}")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import floor
 from typing import Final
 
 from tltlc.core.record import record
@@ -112,7 +113,8 @@ class Bounds(Again):
 
     def _say_how_to_count(self, state: State, number: int, condition: State) -> None:
         rule, inner = f"keep {state.at(OR)} implies", condition.text
-        time = f"{number * self._step_s:.10g} s"
+        # Rounded down, so that no further step is needed.
+        time = f"{floor(number * self._step_s * 1e6) / 1e6:.10g} s"
         total = (
             f", `{rule} total_time({inner}) >= {time}` adds up the lengths of the steps, and the first step of play "
             "has none"

@@ -34,6 +34,9 @@ class Conditions(Quantities):
     def named(self, term: Term) -> State:
         return State(term.text)
 
+    def recently(self, term: Term, duration: Duration) -> State:
+        return State(f"once within {duration.text} {term.text}")
+
     def not_named(self, term: Term) -> State:
         return State(term.text).negated()
 

@@ -15,7 +15,9 @@ def takes_one_reading(clause: str, words: Words) -> bool:
     is_lasting = words.find(LASTING) or words.word(0) == "in"
     if is_lasting and ("<= previous(" in answer or ">= previous(" in answer) and " and previously " not in event:
         return True  # the first step may be compared with the one before
-    return _denies_its_own_event(event, answer) or (lasts_on(event) and answer.startswith("eventually within "))
+    if _denies_its_own_event(event, answer) or _counts_from_start(answer):
+        return True
+    return lasts_on(event) and answer.startswith("eventually within ")
 
 
 def is_english_alone(words: Words) -> bool:
@@ -26,8 +28,14 @@ def is_english_alone(words: Words) -> bool:
 
 
 def _denies_its_own_event(event: str, answer: str) -> bool:
-    """Whether a rule is `a implies (not a weak_until b)`, which no step with a meets."""
-    return answer.startswith(f"(not {event.removeprefix('begins ')} weak_until ")
+    """Whether a rule is `a implies (not a weak_until b)`, which no step with a meets; the same for `a and c`."""
+    parts = [part.removeprefix("begins ") for word in (" and ", " or ") for part in event.split(word)]
+    return answer.startswith(tuple(f"(not {part} weak_until " for part in parts))
+
+
+def _counts_from_start(answer: str) -> bool:
+    """Whether an answer within a time compares `times(p)`, which counts from the first step on."""
+    return answer.startswith("eventually within ") and " times(" in answer
 
 
 def lasts_on(event: str) -> bool:

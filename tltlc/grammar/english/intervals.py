@@ -110,6 +110,10 @@ class Intervals(Rules):
     def after_until_keep(self, start: State, end: State, state: State) -> _Found:
         return self.keep_after_until(state, start, end)
 
+    def avoid_while_unless(self, state: State, during: State, excuse: State) -> _Found:
+        both = joined([state, during], "and")
+        return Reading((f"keep {both.at(OR)} implies {excuse.at(OR)}",))
+
     # Until, at first and at last.
 
     def until_rule(self, state: State, end: State) -> _Found:

@@ -74,9 +74,7 @@ def _notes(expression: Expr, source: SourceFile, step_s: float) -> Iterator[tupl
                     ("always", "G["),
                 )
         if isinstance(part, BinaryExpr) and part.op in ("U", "W"):
-            counts = [part for part in parts(part.left) if isinstance(part, CallExpr) and part.name in _FROM_START]
-            for count in counts:
-                yield f"`{source.slice(count.span)}` also counts what was before this rule begins", ()
+            yield from _counted_before(part.left, source)
         if isinstance(part, BinaryExpr) and part.op == "U":
             end = source.slice(part.right.span)
             yield f"write `weak_until` for `until` if play may end before `{end}`", ("weak_until",)
@@ -86,6 +84,13 @@ def _notes(expression: Expr, source: SourceFile, step_s: float) -> Iterator[tupl
             note = _of_time(part, source, step_s)
             if note:
                 yield note, ("time_holding",)
+
+
+def _counted_before(asked: Expr, source: SourceFile) -> Iterator[tuple[str, tuple[str, ...]]]:
+    """Yield a note on each count of what a rule asks for that may have begun before the rule does."""
+    for part in parts(asked):
+        if isinstance(part, CallExpr) and part.name in _FROM_START:
+            yield f"`{source.slice(part.span)}` also counts what was before this rule begins", ()
 
 
 def _window_note(call: CallExpr, source: SourceFile, step_s: float) -> str:
@@ -104,6 +109,8 @@ def _rule_notes(rule: BinaryExpr, source: SourceFile) -> Iterator[tuple[str, tup
         yield f"write `weak_next` for `next` if play may end at a step with `{condition}`", ("weak_next",)
     answer = rule.right.inner if isinstance(rule.right, GroupExpr) else rule.right
     is_awaited = rule.op == "within" or (isinstance(answer, Unary) and answer.op == "F")
+    if is_awaited:
+        yield from _counted_before(answer, source)
     if is_awaited and isinstance(given, BinaryExpr) and given.op in (">", ">=") and _is_held(given.left):
         yield f"each step with `{condition}` asks anew; write `begins ({condition})` if once is enough", ("begins",)
 

@@ -34,6 +34,8 @@ _LASTING: Final = frozenset("stays stay remains remain must should never".split(
 """Words of a condition alone that make it a rule for every step."""
 _VERBS: Final = phrases("lasts", "goes", "follows", "is followed", "happens", "must", "may", "changes only")
 """Words that need no `keep` before their sentence."""
+_BEFORE_EVENTS: Final = frozenset("while when whenever if after during".split())
+"""Words that begin a rule of their own, and need no `keep` before them."""
 _MOST: Final = 64
 """The most ways in which the parts of one phrase are put together."""
 
@@ -57,7 +59,8 @@ def sentence(words: Words) -> Sentence:
     load, no sentence is read.
     """
     whole = _sentence(words)
-    if not whole.readings and not whole.limit and words.word(0) == "keep" and words.find(_VERBS):
+    needs_no_keep = words.word(0) == "keep" and (words.word(1) in _BEFORE_EVENTS or words.find(_VERBS))
+    if not whole.readings and not whole.limit and needs_no_keep:
         whole = _sentence(words[1:])
     lines = words.lines()
     if whole.readings or whole.limit or len(lines) < 2:

@@ -264,12 +264,22 @@ def _within_time(
     rewrite = None
     if clause and failure.start == "clause":
         rewrite = suggest_rewrite(failure, 0, len(tokens) - 1, clause, title)
-    elif sign and count.number and not keyword:
+    elif sign and count.number and _is_about_the_last(failure, place):
         rewrite = suggest_rewrite(failure, start, end, comparison, title)
     if rewrite is not None:
         return rewrite
     help_ = f"write `{clause}`" if clause else COMPARE_COUNT.format(p=operand, time=count.time)
     return failure.error("TLT0101", title, help_, span=span_of(tokens[start:end]))
+
+
+def _is_about_the_last(failure: ParseFailure, place: tuple[int, int]) -> bool:
+    """Whether a count is what a rule asks for, as in `a implies b 3 times in the last 5 s`, and about the last time.
+
+    Behind `and`, `or` and `not`, the count may be about more than its own operand.
+    """
+    tokens, (start, end) = failure.tokens, place
+    words = {token.text for token in tokens[start:end]}
+    return tokens[start - 1].type == "IMPLIES" and tokens[end].type == END and bool(words & {"last", "past", "any"})
 
 
 def _again_within(keyword: str, operand: str, sign: str, count: _Count, head: str) -> str:
