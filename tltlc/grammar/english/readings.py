@@ -34,7 +34,7 @@ _LASTING: Final = frozenset("stays stay remains remain must should never".split(
 """Words of a condition alone that make it a rule for every step."""
 _VERBS: Final = phrases("lasts", "goes", "follows", "is followed", "happens", "must", "may", "changes only")
 """Words that need no `keep` before their sentence."""
-_BEFORE_EVENTS: Final = frozenset("while when whenever if after during".split())
+_BEFORE_EVENTS: Final = frozenset(("while", "during"))
 """Words that begin a rule of their own, and need no `keep` before them."""
 _MOST: Final = 64
 """The most ways in which the parts of one phrase are put together."""
