@@ -9,7 +9,7 @@ from tltlc.automaton.finite.contradiction import unsatisfiable
 from tltlc.diagnostics.diagnostic import Label
 from tltlc.expression.tree import SignalValue, nodes
 from tltlc.grammar.tree import BinaryExpr, CallExpr, Clause, Unary
-from tltlc.grammar.walk import operands
+from tltlc.grammar.walk import operands, parts
 from tltlc.logic.formula import Formula, and_, not_
 from tltlc.logic.text.phrases import is_state
 from tltlc.resolve.spec import Conjunct
@@ -21,6 +21,8 @@ from tltlc.tools.lint.stretches import every_step
 
 _BEFORE: Final = {"previous", "previously", "initial"}
 """What compares a step with one before; at the first step, there is none."""
+_LATER: Final = ("F", "G", "X", "N", "U", "W", "R", "M", "then", "within")
+"""The operators about later steps."""
 
 
 def check(view: FileView) -> Iterator[RuleFinding]:
@@ -104,6 +106,8 @@ def _goal(value: ScopedExpression, spec: SpecView) -> Iterator[RuleFinding]:
 
 
 def _state(part: ScopedExpression) -> Formula | None:
+    if any(isinstance(tree, (Unary, BinaryExpr)) and tree.op in _LATER for tree in parts(part.tree)):
+        return None  # without the work of resolving it
     formula = part.formula()
     return formula if formula is not None and is_state(formula) else None
 
