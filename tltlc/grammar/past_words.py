@@ -79,6 +79,9 @@ SINCE: Final = {
 }
 """The functions that begin anew at an event, by those that begin at the first sample."""
 
+OF_EVENTS: Final = ("times_since", "total_time_since", "highest_since", "lowest_since", "value_at")
+"""The functions whose second argument is a formula: the event since which, or the step at which, they ask."""
+
 SYNONYMS: Final = {
     **dict.fromkeys(("count", "counter", "count_of"), "times"),
     **dict.fromkeys(("prev", "pre", "old"), "previous"),

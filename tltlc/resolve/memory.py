@@ -14,7 +14,7 @@ from tltlc.core.record import replace
 from tltlc.core.source import Span
 from tltlc.diagnostics.diagnostic import Label
 from tltlc.expression.tree import Before, Condition, Expression, Op, SignalValue, When, depth
-from tltlc.grammar.past_words import FUNCTIONS
+from tltlc.grammar.past_words import FUNCTIONS, OF_EVENTS
 from tltlc.grammar.tree import BinaryExpr, CallExpr, Expr, GroupExpr, NumberExpr, Unary
 from tltlc.io.limits import ARITHMETIC
 from tltlc.logic import formula as logic
@@ -45,8 +45,6 @@ _OF_FORMULAS: Final = (
     "total_time",
     "total_time_since",
 )
-_WITH_EVENT: Final = ("times_since", "total_time_since", "highest_since", "lowest_since", "value_at")
-"""The functions whose second argument is a formula: the event since which, or the state at which, they ask."""
 _MOST_NESTED: Final = 16
 """The most functions of the past that may stand inside each other."""
 _LONGEST: Final = 10_000
@@ -211,14 +209,14 @@ def recall(expr: CallExpr, env: Env, level: int) -> Quantity:
     around the call.
     """
     is_of_formula = expr.name in _OF_FORMULAS
-    least = 2 if expr.name in (*_WITH_EVENT, "times_within") else 1
+    least = 2 if expr.name in (*OF_EVENTS, "times_within") else 1
     most = least + is_of_formula
     if not least <= len(expr.arguments) <= most or any(argument.name for argument in expr.arguments):
         form = " or ".join(f"`{form}`" for form in FUNCTIONS[expr.name].forms)
         first = "formula" if is_of_formula else "number"
         if expr.name == "times_within":
             title = "`times_within` takes a formula and a time"
-        elif expr.name not in _WITH_EVENT:
+        elif expr.name not in OF_EVENTS:
             title = f"`{expr.name}` takes one {first}"
         else:
             title = f"`{expr.name}` takes {'two formulas' if is_of_formula else 'a number and a formula'}"
@@ -238,7 +236,7 @@ def recall(expr: CallExpr, env: Env, level: int) -> Quantity:
 
 def _of_formula(expr: CallExpr, env: Env) -> Quantity:
     operand = _operand(expr.arguments[0].value, env)
-    event = _operand(expr.arguments[1].value, env) if expr.name in _WITH_EVENT else None
+    event = _operand(expr.arguments[1].value, env) if expr.name in OF_EVENTS else None
     texts = [ascii_text(operand)] if event is None else [ascii_text(operand), _event_text(expr, event, env)]
     window = _counted_window(expr, operand, env) if expr.name == "times_within" else None
     if window is not None:
@@ -349,7 +347,7 @@ def _of_number(expr: CallExpr, env: Env, level: int) -> Quantity:
 
     argument = expr.arguments[0].value
     value = check_closed(quantity(argument, env, level), argument, env)
-    event = _operand(expr.arguments[1].value, env) if expr.name in _WITH_EVENT else None
+    event = _operand(expr.arguments[1].value, env) if expr.name in OF_EVENTS else None
     if value.is_constant:
         title = f"`{expr.name}` of a constant is the constant"
         advice = f"leave out `{expr.name}`, or name a signal"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from tltlc.grammar.english.answers import Asked
+from tltlc.grammar.english.doubts import denies_its_own_event
 from tltlc.grammar.english.events import Event, as_state
 from tltlc.grammar.english.rules import Reading, When, are_simple, begun_text
 from tltlc.grammar.english.sequels import Sequels
@@ -99,7 +100,7 @@ class Again(Sequels):
         state, formula = as_state(event), answers[0].answer.state.text
         if state is None or not answers[0].is_formula:
             return False
-        if _includes_denied(state, formula):
+        if state.level > ATOM and denies_its_own_event(state.text, formula):
             return True
         texts = [state.negated().text, f"not {state.at(ATOM).removeprefix('begins ')}"]
         denied = tuple(f"({text} {name} " for text in texts for name in ("weak_until", "until"))
@@ -109,20 +110,14 @@ class Again(Sequels):
         """Return the readings of `after a, no a until b`; None of `after a, no second b until c`, of two events."""
         state, until = as_state(event), answers[0].until
         formula = answers[0].answer.state.text
-        if state is not None and not answers[1:] and _includes_denied(state, formula):
+        is_compound = state is not None and state.level > ATOM and not answers[1:]
+        if state is not None and is_compound and denies_its_own_event(state.text, formula):
             return Reading((f"keep {state.at(OR)} implies weak_next {formula}",))
         if state is None or until is None or answers[1:] or not are_simple(state):
             return None
         if begun_text(until[0].negated()) != begun_text(state):
             return None
         return _not_again_until(state, until[1])
-
-
-def _includes_denied(event: State, formula: str) -> bool:
-    """Whether an answer such as `(not a weak_until b)` forbids a part of its own event, as of `a and c`."""
-    parts = {part.removeprefix("begins ") for word in (" and ", " or ") for part in event.text.split(word)}
-    denied = tuple(f"(not {part} {name} " for part in parts for name in ("weak_until", "until"))
-    return len(parts) > 1 and formula.startswith(denied)
 
 
 def _not_again_until(state: State, end: State) -> list[Reading]:

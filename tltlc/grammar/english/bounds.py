@@ -1,4 +1,4 @@
-"""What the rules mean that end at an event or after a time, and the rules about so many steps with a condition."""
+"""Rules with an end, such as `a until b or 5 s`, and with a number of steps, such as `a only after 3 steps`."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class Ending:
 
 
 class Bounds(Again):
-    """The meanings of the rules that an event or a time ends, and of those that ask for so many steps before."""
+    """Rules that hold until an event or for a time, and rules that need a number of steps before them."""
 
     def __init__(self, names: DeclaredNames) -> None:
         super().__init__(names)
@@ -77,7 +77,7 @@ class Bounds(Again):
     def avoid_until_ending(self, state: State, ending: Ending) -> Reading:
         return self.keep_until_ending(state.negated(), ending)
 
-    # After so many steps.
+    # After a number of steps.
 
     def only_after_steps_with(self, state: State, *rest: str | Duration | State) -> _Found:
         """Return the rule of `a only after at least 3 steps with b`, which may lie apart."""

@@ -15,7 +15,7 @@ def takes_one_reading(clause: str, words: Words) -> bool:
     is_lasting = words.find(LASTING) or words.word(0) == "in"
     if is_lasting and ("<= previous(" in answer or ">= previous(" in answer) and " and previously " not in event:
         return True  # the first step may be compared with the one before
-    if _denies_its_own_event(event, answer) or _counts_from_start(answer):
+    if denies_its_own_event(event, answer) or _counts_from_start(answer):
         return True
     return lasts_on(event) and answer.startswith("eventually within ")
 
@@ -27,10 +27,13 @@ def is_english_alone(words: Words) -> bool:
     return is_change or (words.word(0) == "reach" and words.find([("before",)]) is not None)
 
 
-def _denies_its_own_event(event: str, answer: str) -> bool:
-    """Whether a rule is `a implies (not a weak_until b)`, which no step with a meets; the same for `a and c`."""
+def denies_its_own_event(event: str, answer: str) -> bool:
+    """Whether a rule forbids at once what its event asks for: `a implies (not a weak_until b)`.
+
+    The event may have several parts: `a and c implies (not a weak_until b)`.
+    """
     parts = [part.removeprefix("begins ") for word in (" and ", " or ") for part in event.split(word)]
-    return answer.startswith(tuple(f"(not {part} weak_until " for part in parts))
+    return answer.startswith(tuple(f"(not {part} {name} " for part in parts for name in ("weak_until", "until")))
 
 
 def _counts_from_start(answer: str) -> bool:

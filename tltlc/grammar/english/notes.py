@@ -11,6 +11,7 @@ from tltlc.grammar import lalr
 from tltlc.grammar.builder import Builder
 from tltlc.grammar.lexer import tokenize
 from tltlc.grammar.mistakes.declared_names import DeclaredNames
+from tltlc.grammar.past_words import OF_EVENTS
 from tltlc.grammar.tables import load
 from tltlc.grammar.tree import BinaryExpr, CallExpr, Declaration, Expr, GroupExpr, NumberExpr, Unary
 from tltlc.grammar.walk import expressions, parts
@@ -31,7 +32,6 @@ _OF_CALLS: Final = {
     "value_at": "`{call}` is the value at the first step until the first step with `{1}`",
 }
 """What the functions of the trace so far are, where a reader may expect something else."""
-_OF_EVENTS: Final = ("times_since", "total_time_since", "highest_since", "lowest_since", "value_at")
 _FROM_START: Final = ("times", "total_time", "time_holding")
 """The functions that may count steps before a rule begins."""
 _MOST_STEPS: Final = 100
@@ -128,7 +128,7 @@ def _is_since(expression: Expr) -> TypeGuard[CallExpr]:
     """Whether an expression is a function of an event: `times_since(p, q)`, `value_at(x, q)`."""
     if not isinstance(expression, CallExpr):
         return False
-    return expression.name in _OF_EVENTS and len(expression.arguments) > 1
+    return expression.name in OF_EVENTS and len(expression.arguments) > 1
 
 
 def _is_after_event(call: CallExpr, rule: Expr, source: SourceFile) -> bool:

@@ -57,16 +57,16 @@ class Sequels(Stretches):
             State(f"({free} {name} {goal.at(ATOM)})")
             for name, goal in (("weak_until", a), ("until", a), ("until", own))
         )
-        begun, each = "asked where the condition begins", "asked anew at each step with the condition"
+        once, anew = "asked where the condition begins", "asked anew at each step with the condition"
         same_step = f"before `{b.text}` or at the same step"
         first = f"if `{a.text}` must come {same_step}, and neither need come"
         surely = f"if `{a.text}` must come, {same_step}"
         strictly = f"if `{a.text}` must come, at an earlier step than `{b.text}`"
         return [
-            Asked(Answer("now", weak), f"{first}; {begun}", True, is_once=True),
-            Asked(Answer("now", strong), f"{surely}; {begun}", True, is_once=True),
-            Asked(Answer("now", weak), f"{first}; {each}", True),
-            Asked(Answer("now", strict), f"{strictly}; {each}", True),
+            Asked(Answer("now", weak), f"{first}; {once}", True, is_once=True),
+            Asked(Answer("now", strong), f"{surely}; {once}", True, is_once=True),
+            Asked(Answer("now", weak), f"{first}; {anew}", True),
+            Asked(Answer("now", strict), f"{strictly}; {anew}", True),
         ]
 
     def only_after_then(self, state: State, first: State) -> list[Asked]:

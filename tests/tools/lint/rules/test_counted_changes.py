@@ -10,18 +10,18 @@ BEFORE = f"clock 1 Hz\n{SIGNALS}"
 
 
 @pytest.mark.parametrize(
-    ("count", "each"),
+    ("count", "sum_of_counts"),
     [
         ("times(begins a or ends a)", "times(begins a) + times(ends a)"),
         ("times_within((begins a) or ends b, 3 s)", "times_within(begins a, 3 s) + times_within(ends b, 3 s)"),
         ("times_since(begins a or begins b, c)", "times_since(begins a, c) + times_since(begins b, c)"),
     ],
 )
-def test_a_count_of_one_event_or_another_gets_a_finding(count: str, each: str) -> None:
+def test_a_count_of_one_event_or_another_gets_a_finding(count: str, sum_of_counts: str) -> None:
     text = block(f"keep {count} <= 2", before=BEFORE)
     (finding,) = (item.diagnostic for item in findings_in(text) if item.diagnostic.code == "TLT0465")
     assert finding.severity == "note"
-    assert f"`{each}`" in (finding.help or "")
+    assert f"`{sum_of_counts}`" in (finding.help or "")
 
 
 @pytest.mark.parametrize(

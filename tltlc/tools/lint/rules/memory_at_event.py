@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Final
 
+from tltlc.grammar.past_words import OF_EVENTS
 from tltlc.grammar.tree import CallExpr, Unary
 from tltlc.grammar.walk import conjuncts
 from tltlc.resolve.memory import PAST
@@ -12,8 +12,6 @@ from tltlc.resolve.scope import MEMORY_FUNCTIONS
 from tltlc.tools.lint.asked_results import AskedResult, asked_results
 from tltlc.tools.lint.file_view import FileView, ScopedExpression, without_brackets
 from tltlc.tools.lint.rule import LintRule, RuleFinding
-
-_FUNCTIONS: Final = ("times_since", "total_time_since", "highest_since", "lowest_since", "value_at")
 
 
 def check(view: FileView) -> Iterator[RuleFinding]:
@@ -32,7 +30,7 @@ def _findings(asked: AskedResult, view: FileView) -> Iterator[RuleFinding]:
     formulas = [condition.formula() for condition in conditions]
     for part in _present_parts(asked.part):
         call = part.tree
-        if not isinstance(call, CallExpr) or call.name not in _FUNCTIONS or call.name in view.env.scope.names:
+        if not isinstance(call, CallExpr) or call.name not in OF_EVENTS or call.name in view.env.scope.names:
             continue
         event = part.with_tree(without_brackets(call.arguments[1].value))
         formula = event.formula()

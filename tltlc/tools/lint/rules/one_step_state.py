@@ -44,9 +44,9 @@ def _excludes(asked: AskedResult, spec: SpecView) -> bool:
     changes = (without_brackets(tree) for tree in conjuncts(asked.condition.tree))
     if any(isinstance(tree, Unary) and tree.op in ("begins", "ends") for tree in changes):
         return False
-    said = [other.with_tree(tree).formula() for tree in conjuncts(other.tree)]
+    results = [other.with_tree(tree).formula() for tree in conjuncts(other.tree)]
     negated = [not_(condition), *(not_(part) for part in _parts(asked) if part is not None)]
-    if any(part in negated for part in said):
+    if any(part in negated for part in results):
         return False
     return (
         not _can_be(and_(condition, state), asked, spec)

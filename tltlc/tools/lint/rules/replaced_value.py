@@ -6,12 +6,12 @@ from collections.abc import Iterator
 from typing import Final
 
 from tltlc.diagnostics.diagnostic import Label
+from tltlc.grammar.past_words import OF_EVENTS
 from tltlc.grammar.tree import BinaryExpr, CallExpr, Unary
 from tltlc.tools.lint.asked_results import asked_results
 from tltlc.tools.lint.file_view import FileView, ScopedExpression, without_brackets
 from tltlc.tools.lint.rule import LintRule, RuleFinding
 
-_OF_EVENTS: Final = ("times_since", "total_time_since", "highest_since", "lowest_since", "value_at")
 _LATER: Final = ("F", "X", "N", "G", "U", "W", "R", "M", "then")
 """The operators whose operands may be about later steps."""
 
@@ -33,7 +33,7 @@ def _later_values(answer: ScopedExpression) -> Iterator[tuple[ScopedExpression, 
         part, is_later = pending.pop()
         tree = part.tree
         is_later = is_later or (isinstance(tree, (Unary, BinaryExpr)) and tree.op in _LATER)
-        if is_later and isinstance(tree, CallExpr) and tree.name in _OF_EVENTS and len(tree.arguments) > 1:
+        if is_later and isinstance(tree, CallExpr) and tree.name in OF_EVENTS and len(tree.arguments) > 1:
             yield part, part.with_tree(without_brackets(tree.arguments[1].value))
         else:
             pending += [(child, is_later) for child in reversed(part.children())]
