@@ -42,10 +42,10 @@ const PARAMS = [];
  * @type {ReadonlyArray<{label: string, label_english: string, verdict: Verdict, accepting: boolean, ends: boolean}>}
  */
 const STATES = [
-  { label: "F((parcel_distance < 0.5) & X F(door_distance < 0.5)) & G !(dog_distance < 1)", label_english: "Reach parcel_distance < 0.5, then door_distance < 0.5, and avoid dog_distance < 1 throughout.", verdict: "pending", accepting: false, ends: false },
-  { label: "F(door_distance < 0.5) & G !(dog_distance < 1)", label_english: "Reach door_distance < 0.5, and avoid dog_distance < 1 throughout.", verdict: "pending", accepting: false, ends: false },
+  { label: "F((parcel_distance < 0.5) & X F(door_distance < 0.5)) & G !(dog_distance < 1)", label_english: "Reach parcel_distance < 0.5, then door_distance < 0.5, and keep dog_distance >= 1 throughout.", verdict: "pending", accepting: false, ends: false },
+  { label: "F(door_distance < 0.5) & G !(dog_distance < 1)", label_english: "Reach door_distance < 0.5, and keep dog_distance >= 1 throughout.", verdict: "pending", accepting: false, ends: false },
   { label: "false", label_english: "The spec is violated.", verdict: "violated", accepting: false, ends: true },
-  { label: "G !(dog_distance < 1)", label_english: "Avoid dog_distance < 1 throughout.", verdict: "holding", accepting: true, ends: true },
+  { label: "G !(dog_distance < 1)", label_english: "Keep dog_distance >= 1 throughout.", verdict: "holding", accepting: true, ends: true },
 ];
 
 /** @typedef {{clause: string | null, atom: string | null, step: number | null}} Failure */

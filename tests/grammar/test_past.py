@@ -90,9 +90,13 @@ def test_words_for_what_has_held_suggest_once_and_say_what_it_means(wrong: str) 
     assert error.fixes == ()
 
 
-@pytest.mark.parametrize(
-    "wrong", ["keep hidden and seen in the last 5 s", "keep not hidden for the last 3 s", "keep seen 3 times"]
-)
+def test_a_time_behind_several_conditions_may_be_about_the_last_or_about_all() -> None:
+    _, error = _error("keep hidden and seen in the last 5 s")
+    assert error.help == "write `keep hidden and once within 5 s seen`, or `keep once within 5 s (hidden and seen)`"
+    assert error.fixes == ()
+
+
+@pytest.mark.parametrize("wrong", ["keep not hidden for the last 3 s", "keep seen 3 times"])
 def test_a_phrase_with_two_readings_gets_no_fix(wrong: str) -> None:
     _, error = _error(wrong)
     assert error.fixes == ()

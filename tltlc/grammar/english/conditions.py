@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from tltlc.core.record import record
-from tltlc.grammar.english.events import Counted, Crossing, Event, Held, as_state
+from tltlc.grammar.english.events import Counted, Crossing, Event, Held, as_state, joined_events
 from tltlc.grammar.english.quantities import Duration, Number, Quantities, comparison
 from tltlc.grammar.english.terminals import Term, change_of_enum
 from tltlc.grammar.mistakes.declared_names import DeclaredNames
@@ -28,6 +28,8 @@ class Conditions(Quantities):
         """Whether the sentence says `again`."""
         self._since: dict[str, tuple[State, State]] = {}
         """Maps the texts of conditions such as `a since the last b` to a and b."""
+        self._recent: dict[str, tuple[State, Duration]] = {}
+        """Maps the texts of conditions such as `a in the last 5 s` to a and the time."""
 
     # Bools and enums.
 
@@ -35,7 +37,9 @@ class Conditions(Quantities):
         return State(term.text)
 
     def recently(self, term: Term, duration: Duration) -> State:
-        return State(f"once within {duration.text} {term.text}")
+        recent = State(f"once within {duration.text} {term.text}")
+        self._recent[recent.text] = (State(term.text), duration)
+        return recent
 
     def not_named(self, term: Term) -> State:
         return State(term.text).negated()
@@ -146,11 +150,23 @@ class Conditions(Quantities):
         state = as_state(event)
         return state if state is None or state.level == ATOM else State(f"({state.text})")
 
-    def all_of(self, *events: Event) -> State | None:
-        return None if self._has_open_end(events) else _joined(events, "and")
+    def all_of(self, *events: Event) -> list[State]:
+        return self._of_all(events, "and")
 
-    def any_of(self, *events: Event) -> State | None:
-        return None if self._has_open_end(events) else _joined(events, "or")
+    def any_of(self, *events: Event) -> list[State]:
+        return self._of_all(events, "or")
+
+    def _of_all(self, events: Sequence[Event], operator: str) -> list[State]:
+        """Return the readings of several conditions: `in the last 5 s` is about the one before it, or about all."""
+        state = None if self._has_open_end(events) else joined_events(events, operator)
+        if state is None:
+            return []
+        *others, last = events
+        if not isinstance(last, State) or last.text not in self._recent:
+            return [state]
+        of_all = joined_events([*others, self._recent[last.text][0]], operator)
+        assert of_all is not None
+        return [state, State(f"once within {self._recent[last.text][1].text} {of_all.at(ATOM)}")]
 
     def _has_open_end(self, events: Sequence[Event]) -> bool:
         """Whether `is false` stands behind the last condition alone, and may be about all of them."""
@@ -159,7 +175,7 @@ class Conditions(Quantities):
 
     def none_of(self, *events: Event) -> State | None:
         states = [as_state(event) for event in events]
-        return _joined([state.negated() for state in states if state is not None], "and")
+        return joined_events([state.negated() for state in states if state is not None], "and")
 
     def members(self, *states: State) -> Members:
         return Members(states)
@@ -276,9 +292,3 @@ def _crossing(state: State | None) -> Crossing | None:
 
 def _is(name: Term, value: Term) -> State:
     return State(f"{name.text} is {value.text}", ATOM, f"{name.text} is not {value.text}")
-
-
-def _joined(events: Sequence[Event], operator: str) -> State | None:
-    states = [as_state(event) for event in events]
-    known = [state for state in states if state is not None]
-    return joined(known, operator) if len(known) == len(states) else None

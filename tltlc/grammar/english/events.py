@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from tltlc.core.record import record
 from tltlc.grammar.english.quantities import Duration
 from tltlc.grammar.mistakes.sentences.states import AND, ATOM, State, joined
@@ -60,3 +62,10 @@ def _held_for_steps(event: Held) -> State | None:
         return event.state
     whole = " ".join(["previously"] * (int(count) - 1) + ["true"])
     return State(f"historically for {count} steps {event.state.at(ATOM)} and {whole}", AND)
+
+
+def joined_events(events: Sequence[Event], operator: str) -> State | None:
+    """Return what `and` or `or` makes of several events; None if one is more than a condition."""
+    states = [as_state(event) for event in events]
+    known = [state for state in states if state is not None]
+    return joined(known, operator) if len(known) == len(states) else None

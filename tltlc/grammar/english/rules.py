@@ -7,7 +7,7 @@ from typing import Final, Literal
 from tltlc.core.record import record, replace
 from tltlc.grammar.english.answers import MOST_STEPS, Answers, Asked, is_negative, lasting_formula
 from tltlc.grammar.english.doubts import lasts_on
-from tltlc.grammar.english.events import Counted, Crossing, Event, Held, as_state
+from tltlc.grammar.english.events import Counted, Crossing, Event, Held, as_state, joined_events
 from tltlc.grammar.english.quantities import MIRRORED, Change, Duration, Number
 from tltlc.grammar.english.terminals import Term
 from tltlc.grammar.mistakes.sentences.answers import Answer
@@ -220,11 +220,11 @@ class Rules(Answers):
         return _conditional("if", event, answers)
 
     def given(self, condition: Event, when: When, event: Event, answers: list[Asked]) -> _Found:
-        state = self.all_of(condition, event)
+        state = joined_events([condition, event], "and")
         return None if state is None else _conditional(when, state, answers)
 
     def first_while(self, when: When, event: Event, condition: State, answers: list[Asked]) -> _Found:
-        state = self.all_of(event, condition)
+        state = joined_events([event, condition], "and")
         return None if state is None else _conditional(when, state, answers)
 
     def last(self, answers: list[Asked], when: When, event: Event) -> _Found:
