@@ -250,6 +250,9 @@ class Quantities:
             return comparison(middle, ">=", low)
         return State(f"{middle.text} >= {low.text} and {middle.text} <= {high.text}", AND)
 
+    def outside(self, middle: Number, low: Number, high: Number) -> State:
+        return State(f"{middle.text} < {low.text} or {middle.text} > {high.text}", OR)
+
     def amount(self, sign: str, number: Term, term: Term) -> State | None:
         return comparison(Number(term.text, term), sign, Number(number.text))
 

@@ -17,6 +17,7 @@ _SIGNS: Final = {
     "LESS": "SIGN", "AT_MOST": "SIGN", "MORE": "SIGN", "AT_LEAST": "SIGN", "EQUALS": "_EQUALS", "UNEQUAL": "_UNEQUAL",
     "EQUAL": "_EQUALS", "PLUS": "PLUS", "MINUS": "MINUS", "TIMES_SIGN": "MUL", "DIVIDE": "DIV", "LPAR": "_LPAR",
     "RPAR": "_RPAR", "LBRACE": "_LBRACE", "RBRACE": "_RBRACE", "COMMA": "_COMMA", "COLON": "_COLON",
+    "LSQB": "_LBRACKET", "RSQB": "_RBRACKET",
 }  # fmt: skip
 _TIME_UNITS: Final = ("s", "ms", "min", "h", "step", "steps")
 _TOTALS: Final = ("total_time",)

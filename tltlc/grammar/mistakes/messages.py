@@ -29,6 +29,7 @@ from tltlc.grammar.mistakes.english_times import never_for_time, until_time
 from tltlc.grammar.mistakes.equalities import verb_is
 from tltlc.grammar.mistakes.filler_words import filler_word
 from tltlc.grammar.mistakes.habits import HABITS, dash_comment, foreign_unit, long_arrow, prefix_between_formulas
+from tltlc.grammar.mistakes.membership import membership
 from tltlc.grammar.mistakes.misused_operators import misread_index, stop_at
 from tltlc.grammar.mistakes.names_side_by_side import is_before_operand, names_side_by_side
 from tltlc.grammar.mistakes.negated_answers import negated_answer_in_rule
@@ -362,6 +363,7 @@ _RULES: Final = (
     long_arrow,
     dash_comment,
     unknown_sign,
+    membership,
     until_time,
     quantifier_in_words,
     colon_after_event,
