@@ -29,17 +29,21 @@ def membership(failure: ParseFailure) -> Diagnostic | None:
     name = text_of(failure, start, at)
     declared = declared_names(failure.source).names.get(tokens[start].text)
     if declared is not None and declared.type == "enum":
-        text, is_loose = f" {'and' if is_negated else 'or'} ".join(
-            f"{name} is {'not ' * is_negated}{part}" for part in parts
-        ), len(parts) > 1
+        text, is_loose = (
+            f" {'and' if is_negated else 'or'} ".join(f"{name} is {'not ' * is_negated}{part}" for part in parts),
+            len(parts) > 1,
+        )
     elif tokens[opening].text == "[" and len(parts) == 2:
         low, high = parts
         text = f"{name} < {low} or {name} > {high}" if is_negated else f"{name} >= {low} and {name} <= {high}"
         is_loose = True
     elif declared is not None and declared.type == "int":
-        text, is_loose = f" {'and' if is_negated else 'or'} ".join(
-            f"{name} {'!=' if is_negated else '=='} {part}" for part in parts
-        ), len(parts) > 1
+        text, is_loose = (
+            f" {'and' if is_negated else 'or'} ".join(
+                f"{name} {'!=' if is_negated else '=='} {part}" for part in parts
+            ),
+            len(parts) > 1,
+        )
     else:
         return None
     is_part = (start, stop) != (formula_start(failure), formula_stop(failure))

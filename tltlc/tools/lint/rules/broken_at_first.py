@@ -66,6 +66,9 @@ def _advice(clause: Clause, rule: ScopedExpression, kept: Formula, spec: SpecVie
     lasting = _lasting(rule)
     if lasting:
         return f"if it must last that long each time, write `{lasting}`; for once, write `reach {rule.text}`"
+    if isinstance(rule.tree, BinaryExpr) and rule.tree.op == "==":
+        left, right = (rule.with_tree(side).text for side in (rule.tree.left, rule.tree.right))
+        return f"if it must come to that, and no further, write `reach {left} >= {right}` and `keep {left} <= {right}`"
     return f"if it must come, write `reach {rule.text}`"
 
 
