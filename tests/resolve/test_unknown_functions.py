@@ -49,6 +49,26 @@ def test_a_call_of_an_unknown_function_names_those_that_are_like_it(number: str,
     assert "declare" not in (error.help or "")
 
 
+@pytest.mark.parametrize(
+    ("rule", "signal"),
+    [
+        ("total_time_within(a, 60 s) <= 10 s", "signal a_total_time_within: time in [0 s, 60 s]"),
+        ("time_in_last(a, 60 s) <= 10 s", "signal a_time_in_last: time in [0 s, 60 s]"),
+        ("mean(x, 60 s) <= 85", "signal x_mean in [0, 100]"),
+        ("moving_average(x + 1, 60 s) <= 85", "signal moving_average in [0, 100]"),
+        ("highest_within(x, 5 s) <= 85", "signal x_highest_within in [0, 100]"),
+        ("sum(x) <= 85", "signal x_sum in [0, 100]"),
+    ],
+)
+def test_a_function_of_many_values_is_for_the_game_to_record(rule: str, signal: str) -> None:
+    error = first_error(f"{HEAD}spec s {{ keep {rule} }}")
+    assert f"`{signal}`" in (error.help or "")
+    name = signal.split(" ")[1].rstrip(":")
+    compile_source(
+        SourceFile("a.tltl", f"clock 10 Hz\n{signal}\nspec s {{ keep {name} <= 10{' s' * (': time' in signal)} }}")
+    )
+
+
 def test_a_call_that_is_like_no_function_gets_a_list_of_them() -> None:
     error = first_error(f"{HEAD}spec s {{ keep foo(a, x > 3) <= 3 }}")
     assert error.title == "there is no function `foo`"

@@ -16,6 +16,11 @@ _LIKE: Final = 0.6
 """How like a name must be to that of a function, from 0 to 1."""
 _MOST_STEPS: Final = 10
 """The most steps back for which a help writes `previous` in each other."""
+_AGGREGATES: Final = frozenset("mean average avg median sum integral std variance rms moving rolling".split())
+"""Words in the names of functions that put many values together, as the language cannot."""
+_WINDOWS: Final = frozenset("within window last past recent over sliding".split())
+_PUT_TOGETHER: Final = frozenset("highest lowest max min maximum minimum peak total time duration held".split())
+"""With a word for a window, these are functions of the last seconds: `total_time_within`, `max_in_last`."""
 _MOST_NAMED: Final = 2
 """The most functions that a help names with their meaning."""
 
@@ -30,11 +35,37 @@ def function_help(call: CallExpr, env: Env) -> tuple[str, tuple[Fix, ...]] | Non
     written = _in_other_words(call, env)
     if written is not None:
         return f"write `{written}`", (replacement_fix(env.scope.source, call.span, written),)
+    if _is_of_window(call):
+        return _window_help(call), ()
     near = _near(call.name)
     if near:
         return "; or ".join(f"`{word.forms[0]}` may be meant: {word.meaning.rstrip('.')}" for word in near), ()
     forms = ", ".join(f"`{word.forms[0]}`" for word in FUNCTIONS.values())
     return f"the functions of the trace so far are {forms}; p and q are true or false, and x is a number", ()
+
+
+def _is_of_window(call: CallExpr) -> bool:
+    """Whether a name is that of a function of many values: `mean`, `total_time_within`, `max_in_last`."""
+    words = set(call.name.lower().split("_"))
+    return bool(words & _AGGREGATES or (words & _WINDOWS and words & _PUT_TOGETHER))
+
+
+def _window_help(call: CallExpr) -> str:
+    argument, name = call.arguments[0].value, call.name.lower()
+    of = argument.name if isinstance(argument, NameExpr) else ""
+    signal = f"{of}_{name}" if of else name
+    is_time = "time" in name or "duration" in name or "held" in name
+    if is_time:
+        limit = (
+            "no function adds up the time of p in the last seconds (`total_time_since(p, q)` adds it up since an event "
+            "q, and `times_within(p, 5 s)` counts how often p begins in the last 5 s)"
+        )
+    else:
+        limit = "no function puts the values of several steps together (`highest_since(x, q)` is the greatest since q)"
+    return (
+        f"{limit}: let the game record that number as a signal, such as "
+        f"`signal {signal}{': time in [0 s, 60 s]' if is_time else ' in [0, 100]'}`, and compare that"
+    )
 
 
 def earlier_value_help(call: CallExpr, env: Env) -> str | None:

@@ -129,6 +129,7 @@ PHRASES: Final[Mapping[str, str]] = {
     "remain": "stay|stays|remain|remains|stay so|stays so|stay there|stays there|stay that way|stays that way|"
     "remains so|stay at|stays at|remain at|remains at|stay like that|stay in|stays in",
     "highest": "highest|maximum|greatest|largest|peak|max|highest value of|maximum of|max of|highest value",
+    "mean": "mean|mean of|average|average of|avg|mean value of|average value of",
     "lowest": "lowest|minimum|smallest|least|min|lowest value of|minimum of|min of|lowest value",
     "so_far": "so far|until now|until then|ever|up to now|up to then|yet|till now",
     "at_most_for": "for at most|for no more than|for no longer than|no longer than|at most for|not longer than|"

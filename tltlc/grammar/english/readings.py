@@ -16,6 +16,7 @@ from tltlc.grammar.english.rules import Reading, Rules
 from tltlc.grammar.english.sentence_parser import SentenceParser, sentence_parser
 from tltlc.grammar.english.terminals import UNKNOWN, Term, known_terms, terms
 from tltlc.grammar.english.transitions import Transitions
+from tltlc.grammar.english.windows import Windows
 from tltlc.grammar.mistakes.sentences.states import State
 from tltlc.grammar.mistakes.sentences.validity import is_valid
 from tltlc.grammar.mistakes.sentences.words import Words, phrases
@@ -40,7 +41,7 @@ _MOST: Final = 64
 """The most ways in which the parts of one phrase are put together."""
 
 
-class Meanings(Periods, Bounds, Extremes, Transitions):
+class Meanings(Windows, Periods, Bounds, Extremes, Transitions):
     """The meanings of all rules of the grammar."""
 
 

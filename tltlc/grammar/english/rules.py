@@ -44,7 +44,10 @@ class Rules(Answers):
     def both_sentences(self, first: Reading, second: Reading) -> Reading | None:
         if first.condition or second.condition or any(" or " in clause for clause in first.clauses):
             return None
-        return Reading((*first.clauses, *second.clauses))
+        if second.clauses[0].startswith("avoid ") and " and " in second.clauses[0]:
+            return None  # `no a, no b and c` may ask for c
+        what = "if that time is for the first of them alone" * first.clauses[0].startswith("require always for ")
+        return Reading((*first.clauses, *second.clauses), what)
 
     def plain_and_rule(self, first: Reading, when: When, event: Event, answers: list[Asked]) -> Reading | None:
         rule = _conditional(when, event, answers)
@@ -87,9 +90,6 @@ class Rules(Answers):
     def avoid_without_before(self, state: State, event: Event) -> _Found:
         condition = as_state(event)
         return None if condition is None else Reading((f"keep {state.at(OR)} implies once {condition.at(ATOM)}",))
-
-    def avoid_first(self, state: State, duration: Duration) -> _Found:
-        return Reading((f"require always for {duration.text} {state.negated().at(ATOM)}",))
 
     def keep_change(self, term: Term, change: Change, sign: str, step: Number) -> _Found:
         if sign in ("<", "<=") and change == "varies":

@@ -65,6 +65,9 @@ class Stretches(Intervals, Orders):
 
     # The first time of play.
 
+    def avoid_first(self, state: State, duration: Duration) -> _Found:
+        return Reading((f"require always for {duration.text} {state.negated().at(ATOM)}",))
+
     def first_avoid(self, duration: Duration, state: State) -> _Found:
         return self.avoid_first(state, duration)
 
@@ -73,6 +76,15 @@ class Stretches(Intervals, Orders):
 
     def first_keep(self, duration: Duration, state: State) -> _Found:
         return self.keep_first(state, duration)
+
+    def first_all(self, duration: Duration, *states: State) -> _Found:
+        """Return the reading of several rules for the first seconds: `in the first 5 s no a, no b and c`."""
+        text = f"require always for {duration.text} {joined([*states], 'and').at(ATOM)}"
+        is_negative_last = is_negative(states[-1])
+        return Reading((text,), "if it is for all of them" if is_negative_last else "")
+
+    def denial(self, state: State) -> State:
+        return state.negated()
 
     def sometime(self, event: Event) -> _Found:
         state = as_state(event)

@@ -63,10 +63,10 @@ def test_a_bound_with_an_effect_is_not_reported(clause: str) -> None:
 def test_the_advice_names_the_right_form() -> None:
     assert helps("require eventually within 2 s (a then b)") == [
         "leave it out; for a time from `a` on, write `reach a then within 2 s b`; "
-        "for a time from the first step, write `(a and time_holding(true) <= 2 s)` for `a`"
+        "for a time from the first step of play, write `(a and time_holding(true) <= 2 s)` for `a`"
     ]
     assert helps("require eventually within 2 s (a then b then a)") == [
-        "leave it out; for a time from the first step, write `(a and time_holding(true) <= 2 s)` for `a`"
+        "leave it out; for a time from the first step of play, write `(a and time_holding(true) <= 2 s)` for `a`"
     ]
     assert helps("require F[0,7] (a then b)") == [
         "leave it out; for a time from `a` on, write `reach a then within 7 steps b`"
@@ -92,3 +92,19 @@ def test_the_advice_for_a_sequence_is_a_deadline_of_its_first_goal() -> None:
         assert accepting == any(
             now_a and any(now_b for _, now_b in trace[at + 1 : at + 3]) for at, (now_a, _) in enumerate(trace[:4])
         )
+
+
+def test_a_sequence_after_an_event_may_have_a_time_from_that_event() -> None:
+    assert helps("keep begins a implies eventually within 2 s (b then a then b)") == [
+        "leave it out; for a time from `begins a` on, write "
+        "`eventually (b then a then (b and time_since(begins a) <= 2 s))`"
+    ]
+    assert helps("keep a implies (eventually within 2 s (b then a))") == [
+        "leave it out; for a time from `b` on, write `eventually (b then within 2 s a)`"
+    ]
+
+
+def test_the_first_seconds_alone_or_every_step_may_be_meant() -> None:
+    assert helps("keep always for 2 s not a") == [
+        "for the first steps alone, write `require always for 2 s not a`; for every step, write `keep not a`"
+    ]

@@ -5,10 +5,12 @@ In `eventually within 60 s (a then b)`, it is `then` that may wait for its first
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
+from tltlc.core.source import Span
 from tltlc.diagnostics.diagnostic import Label
 from tltlc.grammar.tree import BinaryExpr, Unary
+from tltlc.grammar.walk import operands
 from tltlc.tools.lint.file_view import FileView, ScopedExpression, operand_text, without_brackets
 from tltlc.tools.lint.rule import LintRule, RuleFinding
 
@@ -21,16 +23,20 @@ def check(view: FileView) -> Iterator[RuleFinding]:
             inner = _bounded(value, op)
             if inner is not None:
                 bound, awaited = _bound_text(inner), operand_text(_operand(inner))
-                advice = f"write `require eventually {bound} {awaited}`" if op == "F" else f"write `keep {awaited}`"
+                advice = f"write `require eventually {bound} {awaited}`"
+                if op == "G":
+                    first = f"require always {bound.replace('within ', 'for ')} {awaited}"
+                    advice = f"for the first steps alone, write `{first}`; for every step, write `keep {awaited}`"
                 yield _finding(inner, f"`{clause.kind}`", advice)
         for formula in spec.formulas():
             parts = tuple(formula.parts())
             sequences = [part.tree for part in parts if isinstance(part.tree, BinaryExpr) and part.tree.op == "then"]
+            events = _events(parts)
             rests = {without_brackets(sequence.right).span for sequence in sequences}
             for part in parts:
                 yield from _in_sequence(part, is_rest=part.tree.span in rests)
                 yield from _in_operator(part)
-                yield from _before_sequence(part)
+                yield from _before_sequence(part, events.get(part.tree.span))
 
 
 def _in_sequence(part: ScopedExpression, *, is_rest: bool) -> Iterator[RuleFinding]:
@@ -63,20 +69,40 @@ def _in_operator(part: ScopedExpression) -> Iterator[RuleFinding]:
             yield _finding(inner, f"the `{word}` before it", "leave out one of the two operators")
 
 
-def _before_sequence(part: ScopedExpression) -> Iterator[RuleFinding]:
-    """Yield a finding for `eventually` with a bound before a sequence."""
+def _events(parts: Iterable[ScopedExpression]) -> dict[Span, str]:
+    """Map the spans of what rules ask for to their events; to "" where the condition is no `begins p` or `ends p`."""
+    events = {}
+    for part in parts:
+        tree = part.tree
+        if isinstance(tree, BinaryExpr) and tree.op == "implies":
+            event = without_brackets(tree.left)
+            is_event = isinstance(event, Unary) and event.op in ("begins", "ends")
+            events[without_brackets(tree.right).span] = part.with_tree(event).text if is_event else ""
+    return events
+
+
+def _before_sequence(part: ScopedExpression, event: str | None) -> Iterator[RuleFinding]:
+    """Yield a finding for `eventually` with a bound before a sequence; a rule may ask for it after an event."""
     outer = _bounded(part, "F") if isinstance(part.tree, Unary) else None
     inner = without_brackets(_operand(outer).tree) if outer is not None else None
     if outer is None or not isinstance(inner, BinaryExpr) or inner.op != "then":
         return
-    first, time = operand_text(outer.with_tree(inner.left)), _bound_text(outer).removeprefix("within ")
-    advice, second = "leave it out", without_brackets(inner.right)
+    bound = _bound_text(outer)
+    first, time = operand_text(outer.with_tree(inner.left)), bound.removeprefix("within ")
+    advice, second = ["leave it out"], without_brackets(inner.right)
     if inner.bound is None and not (isinstance(second, BinaryExpr) and second.op == "then"):
-        sequence = f"{first} then {_bound_text(outer)} {operand_text(outer.with_tree(second))}"
-        advice += f"; for a time from `{first}` on, write `reach {sequence}`"
+        sequence = f"{first} then {bound} {operand_text(outer.with_tree(second))}"
+        sequence = f"reach {sequence}" if event is None else f"eventually ({sequence})"
+        advice.append(f"for a time from `{first}` on, write `{sequence}`")
     if not time.endswith(("step", "steps")):
-        advice += f"; for a time from the first step, write `({first} and time_holding(true) <= {time})` for `{first}`"
-    yield _finding(outer, "`then`", advice, f"`then` waits for `{first}`, however long that takes")
+        if event:
+            *goals, last = (operand_text(outer.with_tree(goal)) for goal in operands(inner, "then"))
+            timed = f"({last} and time_since({event}) <= {time})"
+            advice.append(f"for a time from `{event}` on, write `eventually ({' then '.join((*goals, timed))})`")
+        elif event is None:
+            timed = f"({first} and time_holding(true) <= {time})"
+            advice.append(f"for a time from the first step of play, write `{timed}` for `{first}`")
+    yield _finding(outer, "`then`", "; ".join(advice), f"`then` waits for `{first}`, however long that takes")
 
 
 def _bounded(part: ScopedExpression, op: str) -> ScopedExpression | None:

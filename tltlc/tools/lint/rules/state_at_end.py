@@ -39,8 +39,8 @@ def _state_at_end(part: ScopedExpression) -> ScopedExpression | None:
 def _finding(part: ScopedExpression, state: ScopedExpression) -> RuleFinding:
     label = Label(part.source, part.tree.span, f"met at the first step with `{state.text}`: an episode may end there")
     help_ = (
-        "a recording is judged to its last step; for the last step of an episode, too, add `limit 60 s`, with your "
-        "time, and `judge at limit`; else allow this with the comment `// tltlc: allow TLT0467`"
+        "a recording is judged to its last step; for the last step of an episode, too, add a limit, and write "
+        "`judge at limit`; else allow this with the comment `// tltlc: allow TLT0467`"
     )
     return RuleFinding("an episode may end before this is decided", (label,), help_)
 

@@ -1,0 +1,63 @@
+"""Sentences about the first seconds, and about all that happens in a window of time, which the game must record."""
+
+from __future__ import annotations
+
+import pytest
+
+import tltlc
+from tests.grammar.test_english_sentences import HEAD, read
+
+
+@pytest.mark.parametrize(
+    ("typed", "clause"),
+    [
+        ("for the first 30 s: no fire, no spray and health > 50",
+         "require always for 30 s (not fire and not spray and health > 50)"),
+        ("in the first 5 s no phase is menu, no fire", "require always for 5 s (phase is not menu and not fire)"),
+        ("for the first 5 s keep health > 50 and avoid fire", "require always for 5 s (health > 50 and not fire)"),
+    ],
+)  # fmt: skip
+def test_several_rules_for_the_first_seconds_are_for_all_of_them(typed: str, clause: str) -> None:
+    readings = read(typed).readings
+    assert readings[0].clauses == (clause,)
+    tltlc.compile_text(f"{HEAD}spec s {{ {clause} }}")
+
+
+def test_a_time_of_the_first_rule_may_be_for_all_or_for_the_first_alone() -> None:
+    readings = read("for the first 5 s: no fire and no spray").readings
+    assert [(*reading.clauses, reading.condition) for reading in readings] == [
+        ("require always for 5 s (not fire and not spray)", "if it is for all of them"),
+        ("require always for 5 s not fire", "avoid spray", "if that time is for the first of them alone"),
+    ]
+
+
+@pytest.mark.parametrize(
+    ("typed", "signal"),
+    [
+        ("keep fire for at most 10 s in any 60 s", "fire_time: time in [0 s, 60 s]"),
+        ("never fire for more than 10 s in total in any 60 s", "fire_time: time in [0 s, 60 s]"),
+        ("at most 10 s of fire within any 60 s", "fire_time: time in [0 s, 60 s]"),
+        ("the average of health over 60 s is at most 5", "health_mean in [0, 100]"),
+        ("the mean health over the last 60 s must be below 50", "health_mean in [0, 100]"),
+        ("health changes by at most 5 in any 3 s", "health_change in [0, 100]"),
+        ("while fire, health rises by at least 20 every 15 s", "recent_change in [0, 100]"),
+    ],
+)
+def test_what_needs_all_values_of_a_window_is_for_the_game_to_record(typed: str, signal: str) -> None:
+    found = read(typed)
+    assert found.readings == ()
+    assert f"`signal {signal}`" in found.limit
+    number = f"{signal.split()[0].rstrip(':')} <= 10{' s' * (': time' in signal)}"
+    tltlc.compile_text(f"clock 10 Hz\nsignal {signal}\nspec s {{ keep {number} }}")
+
+
+@pytest.mark.parametrize(
+    ("typed", "clause"),
+    [
+        ("health changes by at most 5 per step", "keep abs(health - previous(health)) <= 5"),
+        ("at most 3 fire in any 5 s", "keep times_within(fire, 5 s) <= 3"),
+    ],
+)
+def test_what_one_step_or_a_count_can_say_has_a_reading(typed: str, clause: str) -> None:
+    (reading,) = read(typed).readings
+    assert reading.clauses == (clause,)

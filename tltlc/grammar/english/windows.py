@@ -1,0 +1,61 @@
+"""Rules about all that happens in a window of time, such as a total or a mean, which no clause can say."""
+
+from __future__ import annotations
+
+from tltlc.grammar.english.differences import Difference, Differences
+from tltlc.grammar.english.events import Event
+from tltlc.grammar.english.intervals import Every
+from tltlc.grammar.english.quantities import Duration
+from tltlc.grammar.english.rules import Reading, When
+from tltlc.grammar.english.terminals import Term
+from tltlc.grammar.mistakes.sentences.states import State
+
+
+class Windows(Differences):
+    """The meanings of the rules about a window of time: each of them says why it has no clause."""
+
+    def time_in_window(self, state: State, sign: str, time: Duration, window: Duration) -> None:
+        self._let_game_record(
+            f"adds up the time of `{state.text}` in the {window.text} up to a step "
+            f"(`times_within({state.text}, {window.text})` counts how often it begins)",
+            f"{_name(state.text)}_time: time in [0 s, 60 s]",
+        )
+
+    def time_first_in_window(self, sign: str, time: Duration, state: State, window: Duration) -> None:
+        self.time_in_window(state, sign, time, window)
+
+    def change_in_window(self, difference: Difference, window: Duration) -> None:
+        if self.steps(window) != 1:
+            self._let_game_record(
+                f"says by how much `{difference.term.text}` changes in {window.text}",
+                f"{_name(difference.term.text)}_change in [0, 100]",
+            )
+
+    def mean_of(self, term: Term, *windows: Duration) -> None:
+        self._let_game_record(f"takes the mean of `{term.text}`", f"{_name(term.text)}_mean in [0, 100]")
+
+    def at_least_every(self, every: Every) -> Reading | list[Reading] | None:
+        return None if self._adds_up(every) else super().at_least_every(every)
+
+    def at_least_every_while(self, every: Every, when: When, event: Event) -> Reading | list[Reading] | None:
+        return None if self._adds_up(every) else super().at_least_every_while(every, when, event)
+
+    def _adds_up(self, every: Every) -> bool:
+        """Whether what must come is a change by an amount: `honey rises by at least 20 every 15 s`."""
+        text = every.state.text
+        if "previous(" not in text or not {"+", "-"} & {*text.split()}:
+            return False
+        self._let_game_record(
+            f"says by how much a number changes in {every.duration.text}", "recent_change in [0, 100]"
+        )
+        return True
+
+    def _let_game_record(self, what: str, signal: str) -> None:
+        self.limits.append(
+            f"no clause {what}: let the game record that number as a signal, such as `signal {signal}`, and compare it"
+        )
+
+
+def _name(text: str) -> str:
+    """Return a name for a number about a condition or another number."""
+    return text if text.isidentifier() else "recent"
