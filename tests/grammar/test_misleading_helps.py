@@ -224,7 +224,6 @@ def test_another_word_behind_a_number_is_no_unit() -> None:
         ("keep hidden glows", "glows"),
         ("when alarm, hidden must glow", "must"),
         ("keep if hidden alarm else seen", "else"),
-        ("keep times(hit) <= 2 between landings", "between"),
     ],
 )
 def test_a_word_that_the_language_does_not_know_is_named(clause: str, word: str) -> None:

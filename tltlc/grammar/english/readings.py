@@ -115,8 +115,13 @@ def _condition(parser: SentenceParser, terminals: Sequence[Term], start: int, ru
 def _sentence(words: Words) -> Sentence:
     parser = sentence_parser()
     terminals = terms(words, parser.vocabulary) if parser else None
-    tree = parser.parse(terminals) if parser and terminals else None
-    if tree is None or not terminals:
+    return sentence_of(parser, terminals, words) if parser and terminals else Sentence()
+
+
+def sentence_of(parser: SentenceParser, terminals: Sequence[Term], words: Words) -> Sentence:
+    """Return the readings of a sentence of these terminals; ``words`` has the names that its file declares."""
+    tree = parser.parse(terminals)
+    if tree is None:
         return Sentence()
     unique: dict[tuple[str, ...], Reading] = {}
     rules = Meanings(words.names)

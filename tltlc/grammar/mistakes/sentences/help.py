@@ -9,6 +9,7 @@ from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import Diagnostic, Fix, replacement_fix
 from tltlc.grammar.english.clauses import plain_text
 from tltlc.grammar.english.doubts import is_english_alone, takes_one_reading
+from tltlc.grammar.english.gaps import sentence_with_gaps
 from tltlc.grammar.english.notes import notes, reading_notes
 from tltlc.grammar.english.readings import sentence, sentence_forms
 from tltlc.grammar.english.rules import Reading
@@ -130,8 +131,22 @@ def _with_forms(failure: ParseFailure, diagnostic: Diagnostic, words: Words) -> 
     if not is_general or failure.clock_varies or _is_particular(failure, diagnostic.help):
         return diagnostic
     offered = sentence_forms(words) or sentence_forms(with_names(words))
+    if not offered:
+        return _with_gaps(diagnostic, words)
     listed = "".join(f"\n`{form.clause}`: {form.says}" for form in offered)
-    return replace(diagnostic, help=f"write one of these, if it says what you mean:{listed}") if offered else diagnostic
+    return replace(diagnostic, help=f"write one of these, if it says what you mean:{listed}")
+
+
+def _with_gaps(diagnostic: Diagnostic, words: Words) -> Diagnostic:
+    """Return the error for a sentence with the clauses that it may mean, and letters for unknown words."""
+    read = sentence_with_gaps(words)
+    valid = [reading for reading in read.sentence.readings if is_valid(reading.clauses)] if read else []
+    if read is None or not valid:
+        return diagnostic
+    meant = [f"{_quoted(reading.clauses)} {reading.condition}".rstrip() for reading in valid]
+    gaps = " and ".join(f"for `{gap.text}` in place of `{gap.letter}`" for gap in read.gaps)
+    conditions = "condition" if len(read.gaps) == 1 else "conditions"
+    return replace(diagnostic, help=f"write {', or '.join(meant)}, with your {conditions} {gaps}")
 
 
 def _is_particular(failure: ParseFailure, help_: str | None) -> bool:
@@ -196,7 +211,7 @@ def _with_readings(failure: ParseFailure, diagnostic: Diagnostic, found: tuple[R
     span = span_of(failure.tokens[:-1])
     if not valid or "//" in failure.source.slice(span):
         return diagnostic
-    texts = [" and ".join(f"`{clause}`" for clause in reading.clauses) for reading in valid]
+    texts = [_quoted(reading.clauses) for reading in valid]
     if len(valid) > 1 or valid[0].condition:
         described = [f"{text} {reading.condition}".rstrip() for text, reading in zip(texts, valid, strict=True)]
         known = reading_notes(" ".join(valid[0].clauses), declared_names(failure.source), failure.source.slice(span))
@@ -205,3 +220,8 @@ def _with_readings(failure: ParseFailure, diagnostic: Diagnostic, found: tuple[R
     separator = f"\n{indent}" if not indent.strip() else " "
     fix = replacement_fix(failure.source, span, separator.join(valid[0].clauses))
     return replace(diagnostic, help=f"write {texts[0]}", fixes=(replace(fix, title=f"Write {texts[0]}"),))
+
+
+def _quoted(clauses: tuple[str, ...]) -> str:
+    """Return clauses in a help: ``keep a`` and ``reach b`` in quotes of code."""
+    return " and ".join(f"`{clause}`" for clause in clauses)
