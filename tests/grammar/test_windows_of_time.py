@@ -5,7 +5,9 @@ from __future__ import annotations
 import pytest
 
 import tltlc
+from tests.grammar.phrases_as_typed import errors
 from tests.grammar.test_english_sentences import HEAD, read
+from tltlc.core.source import SourceFile
 
 
 @pytest.mark.parametrize(
@@ -61,3 +63,43 @@ def test_what_needs_all_values_of_a_window_is_for_the_game_to_record(typed: str,
 def test_what_one_step_or_a_count_can_say_has_a_reading(typed: str, clause: str) -> None:
     (reading,) = read(typed).readings
     assert reading.clauses == (clause,)
+
+
+@pytest.mark.parametrize(
+    ("typed", "clause"),
+    [
+        ("after spray, fire at most 3 times within 5 s",
+         "keep once within 5 s begins spray implies times_since(fire, begins spray) <= 3"),
+        ("at most 3 fire within 5 s after spray",
+         "keep once within 5 s begins spray implies times_since(fire, begins spray) <= 3"),
+        ("after spray at least 2 fire within 5 s",
+         "keep begins spray implies eventually within 5 s times_since(fire, begins spray) >= 2"),
+        ("spray only if times(fire) >= 3 within 5 s", "keep spray implies times_within(fire, 5 s) >= 3"),
+        ("when times(fire) >= 3 within 5 s then spray", "keep times_within(fire, 5 s) >= 3 implies spray"),
+    ],
+)  # fmt: skip
+def test_a_count_within_a_time_begins_where_the_sentence_says(typed: str, clause: str) -> None:
+    (reading,) = read(typed).readings
+    assert reading.clauses == (clause,)
+    (error,) = errors(SourceFile("a.tltl", f"{HEAD}spec s {{\n{typed}\n}}\n"))
+    assert (error.help or "").startswith(f"write `{clause}`")
+
+
+def test_a_time_without_something_is_the_condition_of_its_rule() -> None:
+    typed = "without fire for at least 8 s, spray within 2 s"
+    (error,) = errors(SourceFile("a.tltl", f"{HEAD}spec s {{\n{typed}\n}}\n"))
+    assert "`keep begins (time_holding(not fire) >= 8 s) implies eventually within 2 s spray`" in (error.help or "")
+    assert "require" not in (error.help or "")
+
+
+@pytest.mark.parametrize(
+    ("typed", "clause"),
+    [
+        ("reach at least 3 fire within 5 s", "reach times_within(fire, 5 s) >= 3"),
+        ("reach at least 3 fire before spray", "require not spray until times(fire) >= 3"),
+    ],
+)
+def test_a_goal_that_counts_keeps_its_readings(typed: str, clause: str) -> None:
+    (error,) = errors(SourceFile("a.tltl", f"{HEAD}spec s {{\n{typed}\n}}\n"))
+    assert f"`{clause}`" in (error.help or "")
+    assert error.fixes == ()

@@ -83,6 +83,16 @@ class Stretches(Intervals, Orders):
         is_negative_last = is_negative(states[-1])
         return Reading((text,), "if it is for all of them" if is_negative_last else "")
 
+    def reach_count_before(self, counted: Counted, end: State) -> Reading | list[Reading] | None:
+        state = as_state(counted)
+        return None if state is None else self.reach_before(state, end)
+
+    def without_first(self, state: State, *rest: str | Duration | list[Asked]) -> Reading | list[Reading] | None:
+        """Return the rule of `without a for 8 s, b within 2 s`."""
+        *parts, answers = rest
+        event = self.held(state.negated(), *(part for part in parts if isinstance(part, (str, Duration))))
+        return None if event is None or not isinstance(answers, list) else self.first("when", event, answers)
+
     def denial(self, state: State) -> State:
         return state.negated()
 

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from tltlc.grammar.english.differences import Difference, Differences
-from tltlc.grammar.english.events import Event
+from tltlc.grammar.english.events import Counted, Event, as_state
 from tltlc.grammar.english.intervals import Every
-from tltlc.grammar.english.quantities import Duration
+from tltlc.grammar.english.quantities import Duration, begun
 from tltlc.grammar.english.rules import Reading, When
 from tltlc.grammar.english.terminals import Term
-from tltlc.grammar.mistakes.sentences.states import State
+from tltlc.grammar.mistakes.sentences.states import ATOM, OR, State
 
 
 class Windows(Differences):
@@ -23,6 +23,27 @@ class Windows(Differences):
 
     def time_first_in_window(self, sign: str, time: Duration, state: State, window: Duration) -> None:
         self.time_in_window(state, sign, time, window)
+
+    def times_in_window(self, count: Term, sign: Term, number: Term, window: Duration) -> State | None:
+        """Return the condition of `times(a) >= 3 within 5 s`."""
+        event = count.text.removeprefix("times(").removesuffix(")")
+        if not count.text.startswith("times(") or "," in event:
+            return None
+        return State(f"times_within({event}, {window.text}) {sign.text} {number.text}")
+
+    def when_count_within(self, when: When, event: Event, counted: Counted, window: Duration) -> Reading | None:
+        """Return the rule of `after a, at most 3 b within 5 s`: the count begins with the last a."""
+        state = as_state(event)
+        if state is None or when in ("while", "as long as"):
+            return None
+        start = begun(state)
+        since = f"times_since({counted.state.text}, {start.text}) {counted.sign or '>='} {counted.number}"
+        if counted.sign in ("<", "<="):
+            return Reading((f"keep once within {window.text} {start.at(ATOM)} implies {since}",))
+        return Reading((f"keep {start.at(OR)} implies eventually within {window.text} {since}",))
+
+    def count_within_after(self, counted: Counted, window: Duration, event: Event) -> Reading | None:
+        return self.when_count_within("after", event, counted, window)
 
     def change_in_window(self, difference: Difference, window: Duration) -> None:
         if self.steps(window) != 1:
