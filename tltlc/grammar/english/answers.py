@@ -80,6 +80,20 @@ class Answers(Conditions):
     def eventually_within(self, duration: Duration, state: State) -> Asked | list[Asked]:
         return self.within(state, duration)
 
+    def came_before_now(self, state: State) -> list[Asked]:
+        """Return the readings of `once before a`: at this step or before it, or before it."""
+        once = f"once {state.at(ATOM)}"
+        return [
+            Asked(Answer("now", State(once)), f"if `{state.text}` may come at the same step"),
+            Asked(Answer("now", State(f"previously {once}")), f"if `{state.text}` must come before it"),
+        ]
+
+    def within_lasting_first(self, duration: Duration, state: State, length: Duration) -> Asked:
+        return self.within_lasting(state, duration, length)
+
+    def eventually_then_until(self, duration: Duration, state: State, kept: State, end: State) -> list[Asked]:
+        return self.within_then_until(state, duration, kept, end)
+
     def reach_in_time(self, state: State, duration: Duration) -> Asked:
         return Asked(Answer("within", self.settled.get(state.text, state), duration.text))
 

@@ -120,6 +120,10 @@ class Conditions(Quantities):
         self.settled[edge.text] = state if operator == "begins" else state.negated()
         return edge
 
+    def enum_left(self, name: Term, before: Term, value: Term) -> State | None:
+        """Return the end of a value: `mode was alert and is not alert any more`."""
+        return self.enum_ends(name, value) if before.text == value.text else None
+
     def enum_before(self, name: Term, value: Term) -> State | None:
         state = self.enum(name, value)
         return None if state is None else State(f"previously ({state.text})")
@@ -254,8 +258,8 @@ class Conditions(Quantities):
     def compared_counted(self, sign: str, number: str, state: State) -> Counted:
         return Counted(state, sign, number)
 
-    def counted_before(self, number: str, state: State) -> Counted:
-        return Counted(state, "", number)
+    def counted_before(self, number: str, state: State) -> Counted | State:
+        return State(f"once {state.at(ATOM)}") if number == "1" else Counted(state, "", number)
 
     def number_of(self, sign: str, number: Term, term: Term) -> Counted:
         return Counted(State(term.text), sign, number.text)

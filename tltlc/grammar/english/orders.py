@@ -120,6 +120,19 @@ class Orders(Rules):
         where = f"any step with `{nearest.text}`, such as the last"
         return [*readings, Reading((f"reach {goal} {rest}",), f"if it counts from {where}")]
 
+    def reach_goals_within_of(self, goals: Goals, duration: Duration, start: State) -> _Found:
+        """Return the goal of `a then b then c within 5 s of a`: the time counts from one of the goals before c."""
+        *earlier, last = goals.states
+        texts = [goal.text.removeprefix("begins ") for goal in earlier]
+        if texts.count(start.text.removeprefix("begins ")) != 1:
+            return None
+        at = texts.index(start.text.removeprefix("begins "))
+        goal = " then ".join(state.at(OR) for state in earlier)
+        if at == len(earlier) - 1:
+            return Reading((f"reach {goal} then within {duration.text} {last.at(OR)}",))
+        timed = joined([last, State(f"once within {duration.text} {begun_text(earlier[at])}")], "and")
+        return Reading((f"reach {goal} then {timed.at(ATOM)}",))
+
     def within_reach_goals(self, duration: Duration, goals: Goals) -> _Found:
         return self.reach_goals_within(goals, duration)
 

@@ -140,7 +140,7 @@ PHRASES: Final[Mapping[str, str]] = {
     "straight": "straight|in a row|without a break|continuously|or more|in one go|at a stretch|without interruption",
     "or_more": "or more|or longer",
     "last": "last|previous",
-    "then": "then|and then|and after that|and finally|, then|, and then",
+    "then": "then|and then|and after that|and finally|, then|, and then|, and after that",
     "at_once": "at the same time|simultaneously|together|at the same step|at same time|at same step|"
     "on the same frame",
     "at_end": "at the end|at the last step|on the last step|at end|at last step|on last step",
@@ -239,6 +239,14 @@ PHRASES: Final[Mapping[str, str]] = {
     "stays_so": "stays that way|stays so|remains so|remains that way|stays like that|stays forever|never ends|"
     "never goes away|never stops|stays on forever|must stay so|must stay that way|stays true forever|"
     "stays that way forever|is permanent|for ever",
+    "stays_on": "stays|stays on|must stay|must stay on|remains|stays active|must last|lasts|keeps on|remains on|"
+    "stays true|remains true|must remain|must hold|has to stay on|should stay on|goes on|continues",
+    "anymore": "anymore|any more|any longer|now",
+    "no_longer": "is no longer",
+    "by_then": "by then|first|in time|in this time|in that time|in meantime|meanwhile|in between",
+    "once_before": "once before|sometime before|at some time before|previously once",
+    "happened_before": "happened before|has happened before|happened earlier|has happened earlier|happened already|"
+    "happened once|has happened once|once before|came before|has come before|happened at some time before",
     "keeps": "stays|remains|is always|always|must stay|must remain|will stay|stays forever|keeps being|always stays",
     "many": "many|much",
     "end_with": "finish with|end with|end up with|finish having|finishes with|ends with|must end with|must finish with|"

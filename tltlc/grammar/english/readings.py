@@ -100,7 +100,7 @@ def sentence_forms(words: Words) -> tuple[Form, ...]:
 
 def _condition(parser: SentenceParser, terminals: Sequence[Term], start: int, rules: Rules) -> tuple[State | None, int]:
     """Return the longest condition that begins at an index, and where it ends; else None and the next index."""
-    if terminals[start].kind not in _FIRST:
+    if terminals[start].kind not in _FIRST and terminals[start].text != "not":
         return None, start + 1
     for stop in range(min(len(terminals), start + _LONGEST_PART), start, -1):
         if terminals[stop - 1].kind in (UNKNOWN, "_COMMA"):

@@ -15,6 +15,7 @@ from tltlc.grammar.mistakes.sentences.rules import answered
 from tltlc.grammar.mistakes.sentences.states import ATOM, OR, State, joined
 from tltlc.grammar.mistakes.sentences.vocabulary import NEGATED_SIGN
 
+_TIMED: Final = ("require always for ", "require eventually always time_holding(")
 When = Literal["if", "when", "while", "as long as", "each", "after"]
 
 
@@ -46,7 +47,7 @@ class Rules(Answers):
             return None
         if second.clauses[0].startswith("avoid ") and " and " in second.clauses[0]:
             return None  # `no a, no b and c` may ask for c
-        what = "if that time is for the first of them alone" * first.clauses[0].startswith("require always for ")
+        what = "if that time is for the first of them alone" * first.clauses[0].startswith(_TIMED)
         return Reading((*first.clauses, *second.clauses), what)
 
     def plain_and_rule(self, first: Reading, when: When, event: Event, answers: list[Asked]) -> Reading | None:
@@ -186,12 +187,6 @@ class Rules(Answers):
     def exactly_when(self, state: State, event: Event) -> _Found:
         condition = as_state(event)
         return None if condition is None else Reading((f"keep {state.at(OR)} iff {condition.at(OR)}",))
-
-    def at_end(self, state: State) -> _Found:
-        return Reading((f"require eventually always {state.at(ATOM)}",))
-
-    def at_start(self, state: State) -> _Found:
-        return Reading((f"require {state.text}",))
 
     # Rules with a condition.
 

@@ -87,6 +87,19 @@ class Stretches(Intervals, Orders):
         state = as_state(counted)
         return None if state is None else self.reach_before(state, end)
 
+    def count_and_only_when(self, counted: Counted, event: Event) -> Reading | None:
+        """Return the rules of `a at most once and only when b`."""
+        condition, sign = as_state(event), counted.sign or "<="
+        if condition is None or sign not in ("<", "<="):
+            return None
+        count = f"keep times({counted.state.text}) {sign} {counted.number}"
+        return Reading((count, f"keep {counted.state.at(OR)} implies {condition.at(OR)}"))
+
+    def stays_for(self, event: State, duration: Duration) -> Reading:
+        """Return the rule of `once a begins, it stays on for 3 s`."""
+        state = self.settled.get(event.text, event)
+        return Reading((f"keep {begun_text(state)} implies always for {duration.text} {state.at(ATOM)}",))
+
     def without_first(self, state: State, *rest: str | Duration | list[Asked]) -> Reading | list[Reading] | None:
         """Return the rule of `without a for 8 s, b within 2 s`."""
         *parts, answers = rest

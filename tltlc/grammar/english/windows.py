@@ -1,4 +1,4 @@
-"""Rules about all that happens in a window of time, such as a total or a mean, which no clause can say."""
+"""Rules about a window of time, such as the last seconds of play; no clause can say a total or a mean of one."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from tltlc.grammar.english.intervals import Every
 from tltlc.grammar.english.quantities import Duration, begun
 from tltlc.grammar.english.rules import Reading, When
 from tltlc.grammar.english.terminals import Term
-from tltlc.grammar.mistakes.sentences.states import ATOM, OR, State
+from tltlc.grammar.mistakes.sentences.states import ATOM, OR, State, joined
 
 
 class Windows(Differences):
-    """The meanings of the rules about a window of time: each of them says why it has no clause."""
+    """The meanings of the rules about the start and the end of play, and about windows of time."""
 
     def time_in_window(self, state: State, sign: str, time: Duration, window: Duration) -> None:
         self._let_game_record(
@@ -30,6 +30,21 @@ class Windows(Differences):
         if not count.text.startswith("times(") or "," in event:
             return None
         return State(f"times_within({event}, {window.text}) {sign.text} {number.text}")
+
+    def at_end(self, state: State) -> Reading:
+        return Reading((f"require eventually always {state.at(ATOM)}",))
+
+    def at_start(self, state: State) -> Reading:
+        return Reading((f"require {state.text}",))
+
+    def last_seconds(self, duration: Duration, *states: State) -> Reading:
+        """Return the rule of `in the last 10 s no a and b`, about the end of play."""
+        held = f"time_holding({joined([*states], 'and').text}) >= {duration.text}"
+        return Reading((f"require eventually always {held}",))
+
+    def reached_then_kept(self, goal: State, duration: Duration, state: State) -> Reading:
+        reached = f"require eventually within {duration.text} {goal.at(ATOM)}"
+        return Reading((reached, f"keep {goal.at(OR)} implies always {state.at(ATOM)}"))
 
     def when_count_within(self, when: When, event: Event, counted: Counted, window: Duration) -> Reading | None:
         """Return the rule of `after a, at most 3 b within 5 s`: the count begins with the last a."""
