@@ -287,3 +287,19 @@ def test_a_sentence_that_is_not_understood_gets_the_words_that_begin_a_rule() ->
 
 def test_a_line_like_a_setting_gets_all_words_that_begin_a_clause() -> None:
     assert (error_of("difficulty hard").help or "").startswith("use one of `reach`, `keep`, ")
+
+
+@pytest.mark.parametrize(
+    ("clause", "meant"),
+    [
+        (
+            "keep alarm implies speed == previous(speed)",
+            "keep alarm implies (speed >= previous(speed) and speed <= previous(speed))",
+        ),
+        ("keep speed != previous(speed)", "keep speed < previous(speed) or speed > previous(speed)"),
+    ],
+)
+def test_a_number_is_not_compared_as_true_or_false(clause: str, meant: str) -> None:
+    error = error_of(clause)
+    assert error.help == f"write `{meant}`"
+    assert len(error.fixes) == 1

@@ -35,6 +35,8 @@ Range = tuple[int, int]
 _VALUE: Final = {"NAME", "NUMBER", "UNIT", "TRUE", "FALSE", *ARITHMETIC} - COMPARISONS
 _WHOLE_SIGNS: Final = {"PLUS", "MINUS", "TIMES_SIGN", "UNIT", "LPAR", "RPAR"}
 """The tokens beside names and numbers with which whole numbers stay whole."""
+_FUNCTIONS: Final = ("previous", "initial", "highest", "lowest")
+"""The functions whose value is that of a number at some step."""
 VERBS: Final = ("is", "are", "equals", "equal")
 _WORDS_OF_EQUALITY: Final = ("equal", "to", "exactly")
 _EQUAL_FORM, _UNEQUAL_FORM = "{a} >= {b} and {a} <= {b}", "{a} < {b} or {a} > {b}"
@@ -83,6 +85,8 @@ def equality(failure: ParseFailure) -> Diagnostic | None:
         elif b in ("0", "1") and not _is_number_signal(failure, (start, at)):
             boolean_text = a if (b == "1") != is_unequal else f"not {a}"
             reason = f", or `{boolean_text}` if its value is true or false"
+        elif _are_numbers(failure, (start, at), (at + 1, stop)):
+            reason = ""  # neither true or false, nor a value
         elif _is_atom(failure, start, at) and _is_atom(failure, at + 1, stop):
             boolean_text = f"({a} iff {b})" if is_part or is_unequal else f"{a} iff {b}"
             boolean_text = f"{'not ' * is_unequal}{boolean_text}"
@@ -174,6 +178,18 @@ def _is_number_signal(failure: ParseFailure, side: Range) -> bool:
     """Whether a side is a signal that is declared as a number."""
     declared = declared_names(failure.source).names.get(failure.tokens[side[0]].text)
     return declared is not None and declared.keyword == "signal" and declared.type not in ("bool", "")
+
+
+def _are_numbers(failure: ParseFailure, *sides: Range) -> bool:
+    """Whether sides are names that are declared as numbers, perhaps in `previous(…)` or another function."""
+    return all(_is_declared_number(failure, side) for side in sides)
+
+
+def _is_declared_number(failure: ParseFailure, side: Range) -> bool:
+    start, stop = side
+    is_call = stop == start + 4 and failure.tokens[start].text in _FUNCTIONS
+    declared = declared_names(failure.source).names.get(failure.tokens[start + 2 * is_call].text)
+    return declared is not None and declared.type not in ("bool", "enum", "")
 
 
 def _may_be_int(failure: ParseFailure, side: Range) -> bool:
