@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from tltlc.core.record import record
+from tltlc.grammar.english.changed_arguments import change_of_enum
 from tltlc.grammar.english.events import Counted, Crossing, Event, Held, as_state, joined_events
 from tltlc.grammar.english.quantities import Duration, Number, Quantities, comparison
-from tltlc.grammar.english.terminals import Term, change_of_enum
+from tltlc.grammar.english.terminals import Term
 from tltlc.grammar.mistakes.declared_names import DeclaredNames
 from tltlc.grammar.mistakes.sentences.states import ATOM, OR, RULE, State, joined
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Final
 
-from tltlc.grammar.english.terminals import CHANGES_OF_ENUM
-from tltlc.grammar.mistakes.sentences.vocabulary import LASTING
+from tltlc.grammar.english.changed_arguments import has_changed_argument
+from tltlc.grammar.mistakes.sentences.vocabulary import CHANGING, LASTING
 from tltlc.grammar.mistakes.sentences.words import Words, phrases
 
 _AT_LEAST: Final = phrases("at least", "no less than", "more than")
@@ -27,10 +27,10 @@ def takes_one_reading(clause: str, words: Words) -> bool:
 def is_english_alone(words: Words) -> bool:
     """Whether words have a meaning in English that other helps do not know: `shift changes`, `reach a before b`."""
     pairs = ((words.declared(at), words.word(at + 1)) for at in range(len(words) - 1))
-    is_change = any(known and known.type == "enum" and word in CHANGES_OF_ENUM for known, word in pairs)
+    is_change = any(known and known.type == "enum" and word in CHANGING for known, word in pairs)
     is_count_in_time = words.find(_AT_LEAST) is not None and words.find(phrases("within", "in")) is not None
     is_goal = words.word(0) == "reach" and (words.find([("before",)]) is not None or is_count_in_time)
-    return is_change or is_goal or words.word(0) == "without"
+    return is_change or is_goal or words.word(0) == "without" or has_changed_argument(words)
 
 
 def denies_its_own_event(event: str, answer: str) -> bool:

@@ -32,6 +32,7 @@ _OF_CALLS: Final = {
     "value_at": "`{call}` is the value at the first step until the first step with `{1}`",
 }
 """What the functions of the trace so far are, where a reader may expect something else."""
+_COUNTS: Final = ("times", "times_since", "times_within")
 _FROM_START: Final = ("times", "total_time", "time_holding")
 """The functions that may count steps before a rule begins."""
 _MOST_STEPS: Final = 100
@@ -63,6 +64,8 @@ def _notes(expression: Expr, source: SourceFile, step_s: float) -> Iterator[tupl
                 yield note.format(*arguments, call=call), (f"{part.name}(",)
             if part.name == "times_within" and (window := _window_note(part, source, step_s)):
                 yield window, ("times_within(",)
+            if part.name in _COUNTS and " != previous(" in arguments[0]:
+                yield f"`{arguments[0]}` at steps in a row counts once", (" != previous(",)
         elif isinstance(part, Unary) and part.op == "begins" and id(part) not in events:
             inner = source.slice(part.operand.span)
             yield f"`begins {inner}` holds only at the first step of `{inner}`, and not at those after it", _BEGINNINGS

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from typing import Final
 
 from tltlc.core.record import record
+from tltlc.grammar.english.changed_arguments import with_changes
 from tltlc.grammar.english.phrases import DROPPED, PHRASES
 from tltlc.grammar.keywords import UNITS_ELSEWHERE
 from tltlc.grammar.mistakes.declared_names import DeclaredName
@@ -21,7 +21,8 @@ _SIGNS: Final = {
 }  # fmt: skip
 _TIME_UNITS: Final = ("s", "ms", "min", "h", "step", "steps")
 _TOTALS: Final = ("total_time",)
-_COUNTS: Final = ("times", "times_since")
+_COUNTS: Final = ("times", "times_since", "times_within")
+_ARITHMETIC: Final = ("+", "-", "*", "/", "^")
 _NUMBERS: Final = ("previous", "initial", "highest", "lowest", "time_since", "time_holding", "abs", "min", "max")
 _BEFORE_PERIODS: Final = ("in", "within", "during", "over", "from", "any", "for")
 _WHOLE: Final = ("whole", "entire")
@@ -30,7 +31,6 @@ _LETTERS: Final = {"Y": "previously", "O": "once", "H": "historically", "S": "si
 """Maps the letters of logic for the past to words."""
 UNKNOWN: Final = "UNKNOWN"
 """The kind of a word that no sentence of the grammar has."""
-CHANGES_OF_ENUM: Final = frozenset(("changes", "changed", "varies", "change"))
 _PREVIOUS: Final = ("previous", "prev")
 _EQUALITIES: Final = ("EQUALS", "UNEQUAL", "EQUAL")
 _BEFORE_VALUES: Final = frozenset(
@@ -83,7 +83,8 @@ def _terms(words: Words, vocabulary: Mapping[str, str]) -> Iterator[Term]:
                 yield Term("VALUE", word.text)
                 continue
             at = call_end(words, start)
-            yield _name(words[start:at]) or Term(UNKNOWN, words[start:at].text)
+            following = words[at:] if words[start - 1 : start].text not in _ARITHMETIC else words[:0]
+            yield _name(words[start:at], following) or Term(UNKNOWN, words[start:at].text)
             if at < len(words) and words[at].text == "'":
                 at += 1
                 yield Term("PRIME", "'")
@@ -167,9 +168,9 @@ def _unit(word: str) -> str:
     return unit if unit in (*_TIME_UNITS, "Hz") else ""
 
 
-def _name(words: Words) -> Term | None:
-    """Return the terminal of a name, perhaps with arguments."""
-    name, text = words[0].text, _with_changes(words)
+def _name(words: Words, following: Words) -> Term | None:
+    """Return the terminal of a name, perhaps with arguments, and with what stands behind it."""
+    name, text = words[0].text, with_changes(words, following)
     declared = words.names.names.get(name)
     if declared is None:
         inner = words[2:-1] if len(words) > 2 else words[:0]
@@ -197,22 +198,6 @@ def _name(words: Words) -> Term | None:
     if declared.type == "bool" or declared.keyword in ("predicate", "let"):
         return Term("BOOL", text, declared)
     return Term("REAL", text, declared) if declared.type else None
-
-
-def change_of_enum(name: str, values: Iterable[str]) -> str:
-    """Return the condition of an enum with another value than at the step before."""
-    return " or ".join(f"ends ({name} is {value})" for value in values)
-
-
-def _with_changes(words: Words) -> str:
-    """Return the text of a name, with a condition for each `shift changes` in its arguments."""
-    text = words.text
-    for name, declared in words.names.names.items():
-        if declared.type == "enum" and name in text:
-            condition = change_of_enum(name, declared.values)
-            text = re.sub(rf"(?<=[(,]) *{name} +(?:{'|'.join(CHANGES_OF_ENUM)})(?= *[,)])", f" {condition}", text)
-            text = text.replace("( ", "(")
-    return text
 
 
 def _value_of(declared: DeclaredName | None, text: str) -> Term:

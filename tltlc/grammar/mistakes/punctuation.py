@@ -25,6 +25,7 @@ from tltlc.grammar.mistakes.rephrasing import (
     suggest_rewrite,
     text_of,
 )
+from tltlc.grammar.mistakes.sentences.vocabulary import CHANGING
 
 NAME: Final = re.compile("[A-Za-z_][A-Za-z0-9_]*")
 _COMMA: Final = {
@@ -186,6 +187,9 @@ def missing_comma(failure: ParseFailure) -> Diagnostic | None:
         return failure.error("TLT0104", "`,` means nothing here", leave_out_help(failure), span=span)
     if before.type not in ("NAME", "NUMBER", "UNIT", "RPAR") or before.text in TEST_ITEMS:
         return None
+    if word := next((text for text in (before.text, token.text) if text in CHANGING), ""):
+        help_ = "that `x` changes is `x != previous(x)` for whole numbers, `begins x or ends x` for true and false"
+        return failure.error("TLT0101", f"the language has no word `{word}`", help_)
     has_unit = before.type == "UNIT"
     text = f"{text_of(failure, failure.stop.index - 1 - has_unit, failure.stop.index)}, {token.text}"
     span = span_of(failure.tokens[failure.stop.index - 1 - has_unit : failure.stop.index + 1])

@@ -137,3 +137,5 @@ ENGLISH: Final = frozenset(
     for word in phrase
 )
 """All words that have a meaning in sentences."""
+CHANGING: Final = frozenset(("changes", "changed", "varies", "change"))
+"""Words for a change, beside the name of what changes."""
