@@ -118,13 +118,13 @@ class Answers(Conditions):
             return None
         return Asked(Answer("now", State(f"{'previously ' * int(steps)}once within {length.text} {state.at(ATOM)}")))
 
-    def window_ahead(self, window: tuple[Duration, Duration], state: State) -> Asked | None:
+    def window_ahead(self, window: tuple[Duration, Duration], state: State) -> Asked | list[Asked] | None:
         return self.window_after(state, window)
 
     def window_ago(self, window: tuple[Duration, Duration], state: State) -> Asked | None:
         return self.window_before(state, window)
 
-    def window_after(self, state: State, window: tuple[Duration, Duration]) -> Asked | None:
+    def window_after(self, state: State, window: tuple[Duration, Duration]) -> Asked | list[Asked] | None:
         first, last = window
         length = _difference(first, last)
         if length is None or is_negative(state):

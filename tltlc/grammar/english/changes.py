@@ -143,6 +143,14 @@ class Changes(Rules):
         )
         return None
 
+    def sum_before(self, number: Number, duration: Duration) -> Number | None:
+        """Return the value of a sum so long ago, as in `(x - y) 5 s ago`."""
+        return None if number.term is None else self.value_before(Term(number.term.kind, number.text), duration)
+
+    def absolute_before(self, number: Number, duration: Duration) -> Number | None:
+        size = self.absolute(number)
+        return None if size is None else self.sum_before(size, duration)
+
     def compared_with_value_before(self, term: Term, sign: str, duration: Duration) -> State | None:
         before = self.value_before(term, duration)
         return None if before is None else comparison(Number(term.text, term), sign, before)
@@ -239,7 +247,30 @@ class Changes(Rules):
     def lowest(self, term: Term) -> Number:
         return Number(f"lowest({term.text})", term)
 
+    # How far two numbers are apart.
+
+    def distance(self, one: Number, other: Number) -> Number | None:
+        """Return what `the distance between x and y` is."""
+        return None if one.text == other.text else self.absolute(self.arithmetic(one, Term("MINUS", "-"), other))
+
+    def apart_by(self, one: Term, other: Term, sign: str, limit: Number) -> State | None:
+        distance = self.distance(Number(one.text, one), Number(other.text, other))
+        return None if distance is None else comparison(distance, sign, limit)
+
+    def never_apart_by(self, one: Term, other: Term, sign: str, limit: Number) -> State | None:
+        state = self.apart_by(one, other, sign, limit)
+        return None if state is None else state.negated()
+
     # Several numbers.
+
+    def unless(self, answers: list[Asked], event: Event) -> _Found:
+        """Return the rule of `keep x and y unchanged unless a`, whose exception is about all of them."""
+        asked, exception = answers[0], as_state(event)
+        same = asked.answer.state
+        is_kept = asked.answer.kind == "now" and not asked.is_formula and asked.answer.keyword != "reach"
+        if answers[1:] or not is_kept or exception is None or not keeps_values(same.text):
+            return super().unless(answers, event)
+        return Reading((f"keep {same.at(ATOM)} or {exception.at(OR if exception.level == OR else ATOM)}",))
 
     def number_names(self, *terms: Term) -> list[tuple[Term, ...]]:
         return [terms]

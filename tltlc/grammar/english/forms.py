@@ -177,6 +177,8 @@ def forms(parts: Sequence[Part]) -> tuple[Form, ...]:
         fitting = known[:3]
     quoted = {name: f"`{text}`" if name not in "Tn" else text for name, text in texts.items()}
     in_steps = any(duration.is_steps for duration in durations)
+    if texts.get("r", "").startswith("time_holding("):  # it may begin in that time, and then last
+        fitting = [p for p in fitting if "{T} {r}" not in p.clause]
     fitting = [p for p in fitting if not (in_steps and "time_holding" in p.clause)]  # which is a time in seconds
     all_forms = (Form(p.clause.format(**texts), p.says.format(**quoted)) for p in fitting)
     return tuple({form.clause: form for form in all_forms}.values())[:_MOST_FORMS]

@@ -240,13 +240,16 @@ PHRASES: Final[Mapping[str, str]] = {
     "never goes away|never stops|stays on forever|must stay so|must stay that way|stays true forever|"
     "stays that way forever|is permanent|for ever",
     "stays_on": "stays|stays on|must stay|must stay on|remains|stays active|must last|lasts|keeps on|remains on|"
-    "stays true|remains true|must remain|must hold|has to stay on|should stay on|goes on|continues",
+    "stays true|remains true|must remain|must hold|has to stay on|should stay on|goes on|continues|stay on|remain on|holds|keeps going|stays up",
     "anymore": "anymore|any more|any longer|now",
     "no_longer": "is no longer",
     "by_then": "by then|first|in time|in this time|in that time|in meantime|meanwhile|in between",
     "once_before": "once before|sometime before|at some time before|previously once",
     "happened_before": "happened before|has happened before|happened earlier|has happened earlier|happened already|"
     "happened once|has happened once|once before|came before|has come before|happened at some time before",
+    "distance": "distance|difference|gap|absolute difference|absolute distance|abs difference",
+    "just_before": "just before|right before|immediately before|directly before|just before that|right before that|"
+    "until just before|up to then|until then|before that|just beforehand",
     "keeps": "stays|remains|is always|always|must stay|must remain|will stay|stays forever|keeps being|always stays",
     "many": "many|much",
     "end_with": "finish with|end with|end up with|finish having|finishes with|ends with|must end with|must finish with|"

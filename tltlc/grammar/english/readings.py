@@ -11,10 +11,12 @@ from tltlc.grammar.english.bounds import Bounds
 from tltlc.grammar.english.events import Crossing
 from tltlc.grammar.english.extremes import Extremes
 from tltlc.grammar.english.forms import Form, Part, forms
+from tltlc.grammar.english.later_times import LaterTimes
 from tltlc.grammar.english.periods import Periods
 from tltlc.grammar.english.rules import Reading, Rules
 from tltlc.grammar.english.sentence_parser import SentenceParser, sentence_parser
 from tltlc.grammar.english.terminals import UNKNOWN, Term, known_terms, terms
+from tltlc.grammar.english.timed_answers import TimedAnswers
 from tltlc.grammar.english.transitions import Transitions
 from tltlc.grammar.english.windows import Windows
 from tltlc.grammar.mistakes.sentences.states import State
@@ -41,7 +43,7 @@ _MOST: Final = 64
 """The most ways in which the parts of one phrase are put together."""
 
 
-class Meanings(Windows, Periods, Bounds, Extremes, Transitions):
+class Meanings(TimedAnswers, LaterTimes, Windows, Periods, Bounds, Extremes, Transitions):
     """The meanings of all rules of the grammar."""
 
 
