@@ -106,12 +106,12 @@ UNTIL = [
 HELD_WITHIN = [
     (
         "keep fire implies eventually within 3 s spray",
-        "keep spray and (fire or begins spray) and once within 3 s fire implies always for 1 s spray",
-        "if `spray` begins within 3 s, and then lasts 1 s",
+        "keep spray and (fire or begins spray) and once within 3 s fire implies always for 2 s spray",
+        "if `spray` begins within 3 s, and then lasts 2 s",
     ),
     (
-        "keep fire implies eventually within 3 s time_holding(spray) >= 1 s",
-        "if `spray` may have begun before, and has held for 1 s within 3 s",
+        "keep fire implies eventually within 3 s time_holding(spray) >= 2 s",
+        "if `spray` may have begun before, and has held for 2 s within 3 s",
     ),
 ]
 LASTS = "if `phase is menu` must last at least 0.5 s, and end within 1.5 s"
@@ -145,8 +145,8 @@ SEVERAL_READINGS: Mapping[str, Sequence[tuple[str, ...]]] = {
         ),
         ("keep begins fire implies next always for 0.5 s phase is shift", "if there must be a next step"),
     ],
-    "keep fire implies within 3 s (spray for 1 s)": HELD_WITHIN,
-    "keep fire implies within 3 s spray for 1 s": HELD_WITHIN,
+    "keep fire implies within 3 s (spray for 2 s)": HELD_WITHIN,
+    "keep fire implies within 3 s spray for 2 s": HELD_WITHIN,
     "keep fire implies (spray for 1 s)": [
         ("keep fire implies time_holding(spray) >= 1 s", "if it must have lasted until then"),
         ("keep fire implies always for 1 s spray", "if it must last from then on"),

@@ -13,7 +13,7 @@ from tltlc.grammar.mistakes.declared_names import DeclaredNames
 from tltlc.grammar.mistakes.sentences.answers import Answer
 from tltlc.grammar.mistakes.sentences.states import ATOM, OR, State, joined
 
-_MOST_STEPS: Final = 8
+_MOST_STEPS: Final = 10
 """The most steps of two times, one after the other, of which the longer one may be any: more are too many states."""
 
 _Found = Reading | list[Reading] | None
