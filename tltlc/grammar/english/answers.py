@@ -188,9 +188,9 @@ class Answers(Conditions):
     def now_unless(self, state: State, event: Event) -> Asked | None:
         exception = as_state(event)
         is_change = state.text in self.settled or state.text in self.changing
-        if exception is None or is_change or max(state.level, exception.level) > ATOM or state.text.startswith("not "):
+        if exception is None or is_change or state.level > ATOM or state.text.startswith("not "):
             return None
-        return Asked(Answer("now", joined([state, exception], "or")))
+        return Asked(Answer("now", joined([state, State(exception.at(ATOM))], "or")))
 
     def within_first(self, duration: Duration, state: State) -> Asked | list[Asked]:
         return self.within(state, duration)

@@ -27,10 +27,14 @@ class Conditions(Quantities):
         super().__init__(names)
         self.is_again = False
         """Whether the sentence says `again`."""
+        self.is_coming = False
+        """Whether the sentence says `comes`."""
         self._since: dict[str, tuple[State, State]] = {}
         """Maps the texts of conditions such as `a since the last b` to a and b."""
         self._recent: dict[str, tuple[State, Duration]] = {}
         """Maps the texts of conditions such as `a in the last 5 s` to a and the time."""
+        self.varying: set[str] = set()
+        """The conditions that an enum changes."""
 
     # Bools and enums.
 
@@ -136,7 +140,9 @@ class Conditions(Quantities):
     def enum_varies(self, name: Term, before: Term | None = None) -> State | None:
         if name.declared is None or (before is not None and before.text != name.text):
             return None
-        return State(change_of_enum(name.text, name.declared.values), OR)
+        state = State(change_of_enum(name.text, name.declared.values), OR)
+        self.varying.add(state.text)
+        return state
 
     def enum_stays(self, name: Term, before: Term | None = None) -> State | None:
         state = self.enum_varies(name, before)

@@ -10,6 +10,10 @@ from tltlc.grammar.mistakes.sentences.words import Words, phrases
 
 _AT_LEAST: Final = phrases("at least", "no less than", "more than")
 
+_NUMBERS: Final = ("int", "number", "ratio", "speed", "length", "time")
+_ENDS_OF_RANGE: Final = (("is", "full"), ("is", "empty"))
+"""Words behind a number that stand for the ends of its range."""
+
 
 def takes_one_reading(clause: str, words: Words) -> bool:
     """Whether a clause that patterns make of a sentence may miss its meaning."""
@@ -26,11 +30,15 @@ def takes_one_reading(clause: str, words: Words) -> bool:
 
 def is_english_alone(words: Words) -> bool:
     """Whether words have a meaning in English that other helps do not know: `shift changes`, `reach a before b`."""
-    pairs = ((words.declared(at), words.word(at + 1)) for at in range(len(words) - 1))
+    pairs = [(words.declared(at), words.word(at + 1)) for at in range(len(words) - 1)]
     is_change = any(known and known.type == "enum" and word in CHANGING for known, word in pairs)
+    is_end = any(
+        known is not None and known.type in _NUMBERS and (words.word(at + 1), words.word(at + 2)) in _ENDS_OF_RANGE
+        for at, (known, _) in enumerate(pairs)
+    )
     is_count_in_time = words.find(_AT_LEAST) is not None and words.find(phrases("within", "in")) is not None
     is_goal = words.word(0) == "reach" and (words.find([("before",)]) is not None or is_count_in_time)
-    return is_change or is_goal or words.word(0) == "without" or has_changed_argument(words)
+    return is_change or is_end or is_goal or words.word(0) == "without" or has_changed_argument(words)
 
 
 def denies_its_own_event(event: str, answer: str) -> bool:

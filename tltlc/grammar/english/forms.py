@@ -23,13 +23,20 @@ _PAIRED: Final = frozenset("between both either neither exactly precisely to".sp
 """Words whose meaning no form has."""
 _MODALS: Final = ("must", "should", "may", "can", "will", "shall")
 _UNCLEAR: Final = frozenset(
-    "unless again longer may allowed end ends least more less but second further another".split()
+    "again longer may allowed end ends least more less but second further another right directly "
+    "immediately straight just".split()
 )
 """Words beside two conditions that the forms would take for their opposite, or leave out."""
+_INEXPRESSIBLE: Final = frozenset(
+    "unless except otherwise else changes change changing toggles toggle flips flip switches switch".split()
+)
+"""Words for exceptions, for two cases and for changes, which no form has."""
 _EDGES: Final = ("begins", "ends")
 _BEGUN: Final = ("begins ", "ends ")
 _BEGINNINGS: Final = frozenset("begins begin starts start becomes".split())
 _NEGATIONS: Final = frozenset("no not never avoid without cannot can't don't mustn't nor".split())
+
+_PROHIBITIONS: Final = frozenset(("avoid", "never", "no", "cannot", "can't"))
 
 
 @record
@@ -161,6 +168,8 @@ def forms(parts: Sequence[Part]) -> tuple[Form, ...]:
     key = (len(conditions), bool(durations), bool(numbers))
     if len([part for part in parts if isinstance(part, Term) and part.kind == "NUMBER"]) > len(numbers):
         return ()
+    if not _INEXPRESSIBLE.isdisjoint(words):
+        return ()
     if len(conditions) > 1 and not numbers and not _UNCLEAR.isdisjoint(words):
         return ()
     if key not in PATTERNS or len(durations) > 1 or len(numbers) > 1 or not set(words).isdisjoint(_PAIRED):
@@ -209,6 +218,10 @@ def _keeps_words(pattern: _Pattern, words: Set[str], slots: Mapping[str, State])
         return False  # one step of that time is enough
     if "time_holding({t})" in pattern.clause and event is not None and event.text.startswith(_BEGUN):
         return False  # a beginning is one step
+    answer = slots.get("r")
+    is_denied = answer is not None and answer.text.startswith("not ") and not words.isdisjoint(_PROHIBITIONS)
+    if is_denied and "eventually" in pattern.clause:
+        return False  # one step without it is not enough
     same = slots.get("a") == slots.get("c")
     return not (("since {b})" in pattern.clause and same) or ("since ({b}" in pattern.clause and not same))
 

@@ -33,6 +33,8 @@ _OF_CALLS: Final = {
 }
 """What the functions of the trace so far are, where a reader may expect something else."""
 _COUNTS: Final = ("times", "times_since", "times_within")
+_OF_EDGES: Final = ("times", "times_within")
+"""The functions that count the beginnings of beginnings and ends as these themselves."""
 _FROM_START: Final = ("times", "total_time", "time_holding")
 """The functions that may count steps before a rule begins."""
 _MOST_STEPS: Final = 100
@@ -58,7 +60,12 @@ def _notes(expression: Expr, source: SourceFile, step_s: float) -> Iterator[tupl
     for part in parts(expression):
         if isinstance(part, CallExpr):
             arguments = [source.slice(argument.span) for argument in part.arguments]
-            note = _OF_CALLS.get(part.name, "")
+            edge = part.arguments[0].value if part.name in _OF_EDGES and part.arguments else None
+            is_edge = isinstance(edge, Unary) and edge.op in ("begins", "ends")
+            note = "" if is_edge else _OF_CALLS.get(part.name, "")
+            if isinstance(edge, Unary) and edge.op == "begins":
+                inner = source.slice(edge.operand.span)
+                yield f"`{source.slice(part.span)}` counts the first step, too, if it has `{inner}`", (f"{part.name}(",)
             if note and not (part.name == "value_at" and _is_after_event(part, expression, source)):
                 call = source.slice(part.span)
                 yield note.format(*arguments, call=call), (f"{part.name}(",)

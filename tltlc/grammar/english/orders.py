@@ -241,6 +241,57 @@ class Orders(Rules):
         before = State(f"previously {early.at(ATOM)}")
         return Reading((f"avoid {joined([before, late], 'and').text}",))
 
+    def never_directly_after(self, late: State, early: State) -> _Found:
+        """Return the readings of `no b right after a`: at the step after each step with a, or after its end."""
+        clause = self.never_follows(late, early)
+        if not isinstance(clause, Reading):
+            return None
+        if not _may_last(early) or _are_values(late, early):
+            return clause
+        ended = joined([State(f"ends {early.at(ATOM)}"), late], "and")
+        return [
+            Reading(clause.clauses, f"if the step after each step with `{early.text}` counts"),
+            Reading((f"avoid {ended.text}",), f"if only the step at which `{early.text}` has ended counts"),
+        ]
+
+    def must_be_directly_after(self, late: State, early: State) -> _Found:
+        """Return the readings of `b right after a`: each a is followed by b, or b follows a alone."""
+        follows = self.directly_follows(late, early)
+        if not isinstance(follows, Reading) or self.is_coming:
+            return None  # `b comes right after a` is about b alone
+        next_ = State(f"weak_next {late.at(ATOM)}")
+        ended = f"keep ends {early.at(ATOM)} implies {late.at(OR)}"
+        readings = [
+            Reading((ended,), f"if it must hold where `{early.text}` ends"),
+            Reading((f"keep {early.at(OR)} implies {next_.text}",), f"if at the step after each `{early.text}`"),
+            Reading(follows.clauses, f"if it may begin only there, and need not come after each `{early.text}`"),
+        ]
+        return readings if _may_last(early) else readings[1:]
+
+    def reach_directly_after(self, late: State, early: State) -> _Found:
+        if is_negative(late) or max(late.level, early.level) > ATOM:
+            return None
+        return Reading((f"reach {joined([State(f'previously {early.at(ATOM)}'), late], 'and').text}",))
+
+    def directly_after(self, event: State, answers: Sequence[Asked]) -> _Found:
+        """Return the readings of `right after a, b`: at the step after each step with a, or after its end."""
+        if any(asked.answer.kind not in ("now", "always") for asked in answers):
+            return self.first("after", event, [*answers])
+        if event.level > ATOM or any(asked.is_formula or asked.answer.keyword == "reach" for asked in answers):
+            return None
+        states = [self.settled.get(asked.answer.state.text, asked.answer.state) for asked in answers]
+        asked_for = joined(states, "and")
+        each = Reading((f"keep {event.text} implies weak_next {asked_for.at(ATOM)}",))
+        if not _may_last(event):
+            return each
+        return [
+            Reading(each.clauses, f"if the step after each step with `{event.text}` counts"),
+            Reading(
+                (f"keep ends {event.at(ATOM)} implies {asked_for.at(OR)}",),
+                f"if only the step at which `{event.text}` has ended counts",
+            ),
+        ]
+
     def never_goes(self, early: State, late: State) -> _Found:
         return self.never_follows(late, early)
 
@@ -273,6 +324,13 @@ def _denied_after(when: When, event: Event, answers: list[Asked]) -> list[Readin
 def _may_last(event: State) -> bool:
     """Whether an event is a bool, or the value of an enum."""
     return event.text.isidentifier() or (event.level == ATOM and re.fullmatch(r"\w+ is \w+", event.text) is not None)
+
+
+def _are_values(one: State, other: State) -> bool:
+    """Whether two conditions are different values of one enum, of which the second ends the first."""
+    values = [state.text.split(" ") for state in (one, other)]
+    is_enum = all(len(words) == 3 and words[1] == "is" for words in values)
+    return is_enum and values[0][0] == values[1][0] and values[0] != values[1]
 
 
 def _may_begin(state: State) -> bool:

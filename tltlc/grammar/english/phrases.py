@@ -24,7 +24,10 @@ PHRASES: Final[Mapping[str, str]] = {
     "each_time": "whenever|every time|each time|any time|anytime|everytime|for each|for every|at every|at each|"
     "on each|"
     "on every|on|upon",
-    "after": "after|once|right after|immediately after|directly after|following|from",
+    "after": "after|once|following|from",
+    "directly_after": "right after|directly after|immediately after|straight after|on the step after|"
+    "at the step after|in the step after|on the frame after|on the next step after|at the next step after|"
+    "one step after",
     "unless": "unless|except when|except if|except while|except during|except|unless when",
     "only_when": "only with|only if|only when|only while|only whenever|only during|only as long as|only at|only in",
     "per": "per|in each|in every|each|every|for each|for every|during each|within each|"
@@ -73,6 +76,14 @@ PHRASES: Final[Mapping[str, str]] = {
     "allowed": "allowed|permitted|ever|at all|at any time|at any point|happens|happen",
     "always": "always|at all times|all the time|the whole time|throughout|at every step|on every step|every frame|"
     "on every frame|forever|for ever|from then on|for good|for the rest|in every frame|at every frame",
+    "for_good": "forever|for ever|for good|permanently|from then on|until end|till end|until end of game|"
+    "until end of play|until end of run|for rest of game|for rest of play|for rest|for rest of run|always from then on|"
+    "stays so forever|stays that way|stays so|remains so",
+    "toggles": "changes|change|changing|toggles|toggle|toggling|switches|switch|switching|flips|flip|flipping|"
+    "changes state|changes value|"
+    "switches state|turns on or off|switches on or off",
+    "changes_of": "changes of|changes in|toggles of|switches of|flips of|switchings of",
+    "having_lasted": "having lasted|after having lasted|after it lasted|after it has lasted|after lasting",
     "eventually": "eventually|at some point|sooner or later|later|finally|at some time|afterwards",
     "also": "also|immediately|instantly|right away|at once|too|as well",
     "next_step": "on the next step|at the next step|in the next step|next step|one step later|on next step|"

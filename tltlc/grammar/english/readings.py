@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import islice, product
+from itertools import islice, pairwise, product
 from typing import Any, Final
 
 from tltlc.core.record import record
+from tltlc.grammar.english.alternatives import Alternatives
 from tltlc.grammar.english.bounds import Bounds
+from tltlc.grammar.english.counts_since import CountsSince
 from tltlc.grammar.english.events import Crossing
+from tltlc.grammar.english.exceptions import Exceptions
 from tltlc.grammar.english.extremes import Extremes
 from tltlc.grammar.english.forms import Form, Part, forms
 from tltlc.grammar.english.later_times import LaterTimes
@@ -17,6 +20,7 @@ from tltlc.grammar.english.rules import Reading, Rules
 from tltlc.grammar.english.sentence_parser import SentenceParser, sentence_parser
 from tltlc.grammar.english.terminals import UNKNOWN, Term, known_terms, terms
 from tltlc.grammar.english.timed_answers import TimedAnswers
+from tltlc.grammar.english.toggles import Toggles
 from tltlc.grammar.english.transitions import Transitions
 from tltlc.grammar.english.windows import Windows
 from tltlc.grammar.mistakes.sentences.states import State
@@ -35,15 +39,22 @@ _CONTENT: Final = frozenset((*_FIRST, UNKNOWN, "VALUE", "SIGN", "UNIT", "TIME_UN
 """The terminals that a sentence which is understood has in conditions and times alone."""
 _LASTING: Final = frozenset("stays stay remains remain must should never".split())
 """Words of a condition alone that make it a rule for every step."""
-_VERBS: Final = phrases("lasts", "goes", "follows", "is followed", "happens", "must", "may", "changes only")
+_VERBS: Final = phrases("lasts", "takes", "goes", "follows", "is followed", "happens", "must", "may", "changes only")
 """Words that need no `keep` before their sentence."""
 _BEFORE_EVENTS: Final = frozenset(("while", "during"))
 """Words that begin a rule of their own, and need no `keep` before them."""
+_COMING: Final = ("come", "comes")
+_KEYWORDS: Final = ("reach", "keep", "avoid")
+"""The words with which the rules of one line begin."""
+_BETWEEN: Final = (",", ";", "and", "but")
+"""The words between two rules."""
 _MOST: Final = 64
 """The most ways in which the parts of one phrase are put together."""
 
 
-class Meanings(TimedAnswers, LaterTimes, Windows, Periods, Bounds, Extremes, Transitions):
+class Meanings(
+    Exceptions, Toggles, Alternatives, CountsSince, TimedAnswers, LaterTimes, Windows, Periods, Bounds, Extremes, Transitions
+):
     """The meanings of all rules of the grammar."""
 
 
@@ -65,13 +76,46 @@ def sentence(words: Words) -> Sentence:
     needs_no_keep = words.word(0) == "keep" and (words.word(1) in _BEFORE_EVENTS or words.find(_VERBS))
     if not whole.readings and not whole.limit and needs_no_keep:
         whole = _sentence(words[1:])
+    if whole.readings or whole.limit:
+        return whole
+    rules = [reading for _, reading in _rules(words)]
+    if rules and all(rules):
+        return Sentence((Reading(tuple(clause for rule in rules if rule for clause in rule.clauses)),))
     lines = words.lines()
-    if whole.readings or whole.limit or len(lines) < 2:
+    if len(lines) < 2:
         return whole
     sentences = [_sentence(line) for line in lines]
     if any(len(line.readings) != 1 for line in sentences):
         return whole
     return Sentence((Reading(tuple(clause for line in sentences for clause in line.readings[0].clauses)),))
+
+
+def unread_rule(words: Words) -> str:
+    """Return which of several rules in one line is not understood, and the clauses of the others; "" if none is."""
+    rules = _rules(words)
+    unread = [text for text, reading in rules if reading is None]
+    clauses = [f"`{clause}`" for _, reading in rules if reading is not None for clause in reading.clauses]
+    if len(unread) != 1 or len(rules) < 3:
+        return ""
+    return f"write each rule on a line of its own: {' and '.join(clauses)}; `{unread[0]}` is not understood"
+
+
+def _rules(words: Words) -> list[tuple[str, Reading | None]]:
+    """Return the rules of `avoid a, keep b, and avoid c`, each with its reading; none if there is one alone.
+
+    Each begins with its own keyword.
+    """
+    starts = [at for at in words.outer() if words.word(at) in _KEYWORDS and (not at or words.word(at - 1) in _BETWEEN)]
+    if len(starts) < 2 or starts[0] or not any(words.word(at) in (",", ";") for at in range(len(words))):
+        return []
+    rules = []
+    for start, stop in pairwise([*starts, len(words)]):
+        while stop < len(words) and words.word(stop - 1) in _BETWEEN:
+            stop -= 1
+        rule = words[start:stop]
+        readings = (Reading((rule.text,)),) if is_valid((rule.text,)) else _sentence(rule).readings
+        rules.append((rule.text, readings[0] if len(readings) == 1 and not readings[0].condition else None))
+    return rules
 
 
 def sentence_forms(words: Words) -> tuple[Form, ...]:
@@ -129,6 +173,7 @@ def sentence_of(parser: SentenceParser, terminals: Sequence[Term], words: Words)
     rules = Meanings(words.names)
     rules.is_lasting = any(term.text in _LASTING for term in terminals)
     rules.is_again = any(term.text == "again" for term in terminals)
+    rules.is_coming = any(term.text in _COMING for term in terminals)
     for reading in _values(tree.children[0], rules):
         unique.setdefault(reading.clauses, reading)
     if len(unique) > _MOST_READINGS:

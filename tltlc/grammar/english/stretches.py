@@ -157,6 +157,9 @@ class Stretches(Intervals, Orders):
         formula = State(f"eventually within {duration.text} always {state.at(ATOM)}")
         return Asked(Answer("now", formula), is_formula=True)
 
+    def settles_first(self, duration: Duration, state: State) -> Asked | None:
+        return self.settles(state, duration)
+
     # Rules that forbid two conditions.
 
     def neither(self, one: State, other: State) -> State:

@@ -110,6 +110,8 @@ def _terms(words: Words, vocabulary: Mapping[str, str]) -> Iterator[Term]:
                 yield Term("_ARROW", "=>")
             elif not (word.type in ("LESS", "AT_MOST") and _is_time_limit(words, start)):
                 yield Term(_SIGNS[word.type], word.text)
+        elif word.text == "just" and words.word(at) == "after":
+            yield Term(vocabulary["right"], "right")
         elif word.text == "one" and (words.word(at) == "of" or _is_article(words, start)):
             yield Term(vocabulary["one"], "one")
         elif number := words.number(start):

@@ -11,7 +11,7 @@ from tltlc.grammar.english.clauses import plain_text
 from tltlc.grammar.english.doubts import is_english_alone, takes_one_reading
 from tltlc.grammar.english.gaps import sentence_with_gaps
 from tltlc.grammar.english.notes import notes, reading_notes
-from tltlc.grammar.english.readings import sentence, sentence_forms
+from tltlc.grammar.english.readings import sentence, sentence_forms, unread_rule
 from tltlc.grammar.english.rules import Reading
 from tltlc.grammar.english.terminals import CALLED
 from tltlc.grammar.lexer import END, tokenize
@@ -33,24 +33,28 @@ from tltlc.grammar.mistakes.sentences.reading import (
     sentence_words,
 )
 from tltlc.grammar.mistakes.sentences.validity import is_valid
-from tltlc.grammar.mistakes.sentences.vocabulary import LASTING, UNLESS
+from tltlc.grammar.mistakes.sentences.vocabulary import DIRECTLY_AFTER, LASTING, UNLESS
 from tltlc.grammar.mistakes.sentences.words import Words, phrases
 from tltlc.grammar.past_words import SYNONYMS
 
-_ENGLISH_ALONE: Final = phrases(
-    "since",
-    "requires",
-    "needs",
-    "falls below",
-    "drops below",
-    "goes below",
-    "rises above",
-    "goes above",
-    "before ends",
-    "again only",
-    "only again",
-    "again until",
-    "again till",
+_ENGLISH_ALONE: Final = (
+    *DIRECTLY_AFTER,
+    *phrases(
+        "since",
+        "requires",
+        "needs",
+        "falls below",
+        "drops below",
+        "goes below",
+        "rises above",
+        "goes above",
+        "before ends",
+        "again only",
+        "only again",
+        "again until",
+        "again till",
+        "again before",
+    ),
 )
 """Words whose meaning in English is not that of an operator, or more than that of a comparison."""
 _GOALS: Final = ("reach ", "require eventually ")
@@ -113,6 +117,8 @@ def _with_reading(
     read = sentence(words)
     if not read.readings and not read.limit:
         read = sentence(with_names(words))
+    if not read.readings and not read.limit and (unread := unread_rule(words) or unread_rule(with_names(words))):
+        return replace(known, help=unread, fixes=())
     is_goal = bool(read.readings) and all(reading.clauses[0].startswith(_GOALS) for reading in read.readings)
     if is_imperative(words) and words.word(0) not in KEYWORDS and not is_goal and not read.limit:
         return known
@@ -183,7 +189,7 @@ def _may_miss(failure: ParseFailure, fix: Fix, words: Words) -> bool:
         or is_same
         or is_denied
         or takes_one_reading(text, words)
-        or (" implies always for " in text and words.find(UNLESS) is not None)
+        or (words.find(UNLESS) is not None and any(part in text for part in (" implies always for ", "time_holding(")))
     )
 
 

@@ -41,6 +41,8 @@ _SILENT: Final = frozenset("the a an to by through via into of up from your my h
 """Words that say nothing inside the words for a name."""
 _EMPTY: Final = frozenset("again still anything anyone anybody your my his her their successfully safely just".split())
 """Words that say nothing in a sentence."""
+_TELLING: Final = frozenset((("again", "before"), ("again", "until"), ("again", "till"), ("just", "after")))
+"""Words of these that say something, with the word behind them."""
 _OPENINGS: Final = phrases(
     "check that", "verify that", "ensure that", "make sure that", "make sure", "assert that", "expect that", "test that"
 )
@@ -60,7 +62,7 @@ def with_names(words: Words) -> Words:
     """Return the words with a declared name in place of each group of words that spells one."""
     words = words.without(_OPENINGS)
     words = _with_never(words)
-    words = words.of([word for at, word in enumerate(words) if words.word(at) not in _EMPTY])
+    words = words.of([word for at, word in enumerate(words) if not _is_empty(words, at)])
     found: list[Word] = []
     at = 0
     while at < len(words):
@@ -82,6 +84,11 @@ def with_names(words: Words) -> Words:
         ):
             at += 1  # `bell rings`, `undo used`
     return words.of(found)
+
+
+def _is_empty(words: Words, at: int) -> bool:
+    """Whether a word says nothing: not `again` in `again before b`, and `just` in `just after b`."""
+    return words.word(at) in _EMPTY and (words.word(at), words.word(at + 1)) not in _TELLING
 
 
 def _with_never(words: Words) -> Words:

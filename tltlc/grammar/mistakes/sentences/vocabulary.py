@@ -45,8 +45,12 @@ SAME_STEP: Final = phrases(
     "anytime", "as soon as", "given", "given that", "in case", "everytime", "for as long as",
 )  # fmt: skip
 """Words before a condition on the same step."""
-FROM_THEN: Final = phrases("after", "once", "right after", "immediately after", "directly after", "following")
+FROM_THEN: Final = phrases("after", "once", "following")
 """Words before an event, from which on something is asked for."""
+DIRECTLY_AFTER: Final = phrases(
+    "right after", "directly after", "immediately after", "straight after", "just after", "step after", "frame after",
+)  # fmt: skip
+"""Words before an event, at the step behind which something is asked for."""
 ONLY_WHEN: Final = tuple(
     ("only", *word) for word in phrases("with", "if", "when", "while", "whenever", "during", "as long as")
 )
@@ -128,6 +132,7 @@ ENGLISH: Final = frozenset(
     word
     for known in (
         *(SUBJECTS, FILLERS, COPULAS, MODALS, ALWAYS, NEVER, NOT, PROHIBITIONS, SAME_STEP, FROM_THEN, ONLY_WHEN),
+        DIRECTLY_AFTER,
         *(ONLY_AFTER, UNLESS, UNTIL, AT_ONCE, COMPARISONS, EQUALITIES, UNEQUAL, WITHIN, FOR, VERBS, SEQUENCE),
         phrases("of with without between times time true false all any either both neither nor next eventually and or"),
         phrases("later order first whole straight continuously allowed permitted finally immediately having but that"),

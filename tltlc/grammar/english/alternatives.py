@@ -1,0 +1,67 @@
+"""What rules with two cases mean (`a implies b, otherwise c`), and rules for an event that has lasted."""
+
+from __future__ import annotations
+
+from tltlc.core.record import replace
+from tltlc.grammar.english.answers import Asked
+from tltlc.grammar.english.events import Event, as_state
+from tltlc.grammar.english.quantities import Duration, Number, comparison
+from tltlc.grammar.english.rules import Reading, Rules, When
+from tltlc.grammar.english.terminals import Term
+from tltlc.grammar.mistakes.sentences.states import ATOM, State, joined
+
+
+class Alternatives(Rules):
+    """The meanings of the rules with two cases, and of the events that come after so long a time."""
+
+    def otherwise(self, when: When, event: Event, answers: list[Asked], others: list[Asked]) -> Reading | None:
+        """Return the rules of `if a, b, otherwise c`: one for the steps with a, and one for those without it."""
+        state = as_state(event)
+        if when == "after" or state is None or state.text.startswith(("begins ", "ends ")):
+            return None
+        first, second = (
+            self.implies(known, [*map(_at_this_step, asked)])
+            for known, asked in ((state, answers), (state.negated(), others))
+        )
+        clauses: list[str] = []
+        for found in (first, second):
+            readings = found if isinstance(found, list) else [] if found is None else [found]
+            if len(readings) != 1 or readings[0].condition:
+                return None
+            clauses += readings[0].clauses
+        return Reading(tuple(clauses))
+
+    def otherwise_implies(self, event: Event, answers: list[Asked], others: list[Asked]) -> Reading | None:
+        return self.otherwise("when", event, answers, others)
+
+    def otherwise_last(self, answers: list[Asked], when: When, event: Event, others: list[Asked]) -> Reading | None:
+        return self.otherwise(when, event, answers, others)
+
+    # An event that has lasted so long.
+
+    def ends_after(self, end: State, sign: str, duration: Duration) -> State | None:
+        """Return the condition of `a ends after at least 2 s`: the step at which a has ended, so long after it began.
+
+        The time from its first step to that step is the length of all its steps.
+        """
+        if not end.text.startswith("ends ") or duration.is_steps:
+            return None
+        begun = end.text.replace("ends ", "begins ", 1)
+        return joined([State(end.text, ATOM), State(f"time_since({begun}) {sign} {duration.text}")], "and")
+
+    # The ends of the range of a number.
+
+    def is_full(self, term: Term) -> State | None:
+        ends = Number(term.text, term).ends
+        return comparison(Number(term.text, term), "==", Number(ends[1])) if len(ends) == 2 else None
+
+    def is_empty(self, term: Term) -> State | None:
+        ends = Number(term.text, term).ends
+        return comparison(Number(term.text, term), "==", Number(ends[0])) if len(ends) == 2 else None
+
+
+def _at_this_step(asked: Asked) -> Asked:
+    """Return `no a` as an answer for the step of its case alone, which ends the other one."""
+    if asked.is_formula or asked.answer.kind != "always" or not asked.answer.is_negative:
+        return asked
+    return replace(asked, answer=replace(asked.answer, kind="now", is_negative=False))

@@ -1,0 +1,67 @@
+"""What rules mean that ask for a count at an event: `a implies at least 3 b since the last a`."""
+
+from __future__ import annotations
+
+import re
+from typing import Final
+
+from tltlc.core.record import replace
+from tltlc.grammar.english.answers import Asked
+from tltlc.grammar.english.events import Event, as_state
+from tltlc.grammar.english.rules import Reading, begun_text
+from tltlc.grammar.english.sequels import Sequels
+from tltlc.grammar.mistakes.sentences.answers import Answer
+from tltlc.grammar.mistakes.sentences.states import ATOM, OR, State
+
+_SINCE: Final = re.compile(r"times_since\(.*, (?P<event>[^,]*)\) (?:<=|>=|<|>|==) \d+")
+"""How often something has begun since an event, compared with a number."""
+
+_Found = Reading | list[Reading] | None
+
+
+class CountsSince(Sequels):
+    """The meanings of the rules that ask for a count since an event."""
+
+    def count_now(self, state: State) -> Asked | None:
+        """Return the answer of `at least 3 b since the last a`."""
+        return Asked(Answer("now", state)) if isinstance(state, State) else None
+
+    def _answers_at(self, event: Event, answers: list[Asked]) -> list[Asked] | None:
+        """Return answers at the steps of an event: a count since that event is the one of the step before."""
+        state = as_state(event)
+        known = super()._answers_at(event, answers)
+        if state is None or known is None:
+            return known
+        return [
+            replace(asked, answer=replace(asked.answer, state=before), is_formula=True, is_once=True)
+            if (before := _before(state, asked.answer.state)) is not None
+            else asked
+            for asked in known
+        ]
+
+    def only_when(self, state: State, event: Event) -> _Found:
+        return self._needs_count(state, event) or super().only_when(state, event)
+
+    def only_after(self, state: State, event: Event) -> _Found:
+        return self._needs_count(state, event) or super().only_after(state, event)
+
+    def needs_count(self, state: State, condition: State) -> _Found:
+        return self._needs_count(state, condition)
+
+    def _needs_count(self, state: State, event: Event) -> Reading | None:
+        """Return the rule of `a only after at least 3 b since the last a`; None for other conditions."""
+        condition = as_state(event)
+        if condition is None or not _SINCE.fullmatch(condition.text):
+            return None
+        before = _before(state, condition)
+        if before is None:
+            return Reading((f"keep {state.at(OR)} implies {condition.text}",))
+        return Reading((f"keep {begun_text(state)} implies {before.text}",))
+
+
+def _before(event: State, condition: State) -> State | None:
+    """Return a count since an event at the step before, which the event itself would begin anew; else None."""
+    since = _SINCE.fullmatch(condition.text)
+    if since is None or since["event"].removeprefix("begins ") != event.text.removeprefix("begins "):
+        return None
+    return State(f"previously ({condition.text})", ATOM)
