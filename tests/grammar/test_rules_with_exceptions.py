@@ -71,6 +71,9 @@ FIXED = {
     "when fire, at least 3 spray since the last fire": COUNTED,
     "fire only after at least 3 spray since the last fire": COUNTED,
     "fire needs at least 3 spray since the last fire": COUNTED,
+    "fire only after at least 3 spray since the last boss_dead": [
+        "keep fire implies times_since(spray, boss_dead) >= 3"
+    ],
     "when fire, at least 3 spray since the last boss_dead": ["keep fire implies times_since(spray, boss_dead) >= 3"],
     # For ever.
     "when spray then within 0.5 s fire for ever": FOR_GOOD,
@@ -188,6 +191,10 @@ def test_no_form_leaves_out_an_exception_or_that_something_comes_directly_after(
     (error,) = errors(spec(typed))
     assert "write one of these" not in (error.help or "")
     assert not error.fixes
+
+
+def test_a_count_since_its_own_event_beside_another_condition_gets_no_clause() -> None:
+    assert read("fire only when at least 2 spray since the last fire and boss_dead").readings == ()
 
 
 def test_a_rule_of_several_that_is_not_understood_is_named() -> None:

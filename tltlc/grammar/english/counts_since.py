@@ -13,7 +13,7 @@ from tltlc.grammar.english.sequels import Sequels
 from tltlc.grammar.mistakes.sentences.answers import Answer
 from tltlc.grammar.mistakes.sentences.states import ATOM, OR, State
 
-_SINCE: Final = re.compile(r"times_since\(.*, (?P<event>[^,]*)\) (?:<=|>=|<|>|==) \d+")
+_SINCE: Final = re.compile(r"times_since\(.*\) (?:<=|>=|<|>|==) \d+")
 """How often something has begun since an event, compared with a number."""
 
 _Found = Reading | list[Reading] | None
@@ -40,10 +40,15 @@ class CountsSince(Sequels):
         ]
 
     def only_when(self, state: State, event: Event) -> _Found:
-        return self._needs_count(state, event) or super().only_when(state, event)
+        if _names_own_count(state, event):
+            return self._needs_count(state, event)
+        return super().only_when(state, event)
 
     def only_after(self, state: State, event: Event) -> _Found:
-        return self._needs_count(state, event) or super().only_after(state, event)
+        condition = as_state(event)
+        if _names_own_count(state, event) or (condition is not None and _is_count(condition)):
+            return self._needs_count(state, event)
+        return super().only_after(state, event)
 
     def needs_count(self, state: State, condition: State) -> _Found:
         return self._needs_count(state, condition)
@@ -51,7 +56,7 @@ class CountsSince(Sequels):
     def _needs_count(self, state: State, event: Event) -> Reading | None:
         """Return the rule of `a only after at least 3 b since the last a`; None for other conditions."""
         condition = as_state(event)
-        if condition is None or not _SINCE.fullmatch(condition.text):
+        if condition is None or not _is_count(condition):
             return None
         before = _before(state, condition)
         if before is None:
@@ -61,7 +66,18 @@ class CountsSince(Sequels):
 
 def _before(event: State, condition: State) -> State | None:
     """Return a count since an event at the step before, which the event itself would begin anew; else None."""
-    since = _SINCE.fullmatch(condition.text)
-    if since is None or since["event"].removeprefix("begins ") != event.text.removeprefix("begins "):
+    if not _is_count(condition) or not _names_own_count(event, condition):
         return None
     return State(f"previously ({condition.text})", ATOM)
+
+
+def _names_own_count(event: State, condition: Event) -> bool:
+    """Whether a condition of an event has a count since that event, perhaps beside another condition."""
+    state = as_state(condition)
+    events = (event.text, event.text.removeprefix("begins "), begun_text(event))
+    is_counted = state is not None and "times_since(" in state.text
+    return state is not None and is_counted and any(f", {text}) " in state.text for text in events)
+
+
+def _is_count(condition: State) -> bool:
+    return condition.level == ATOM and _SINCE.fullmatch(condition.text) is not None

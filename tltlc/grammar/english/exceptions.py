@@ -37,7 +37,7 @@ class Exceptions(Rules):
         is_kept = answer.kind == "now" and state.text not in self.settled and state.text not in self.changing
         if not is_avoided and not is_kept:
             return super().unless(answers, event)
-        if timed := _TIMED.fullmatch(state.text):
+        if state.level == ATOM and (timed := _TIMED.fullmatch(state.text)):
             return _timed_unless(timed, excuse, "avoid" if is_avoided else "keep")
         if _plain(state) in self.varying:
             if is_avoided:
