@@ -901,7 +901,6 @@ SEVERAL_READINGS = {
 NO_READING = (
     "health never more than 20 above its highest",  # which it never is
     "never fire or spray",
-    "keep fire or spray unless boss_dead and fire",
     "reach not fire within 5 s",
     "fire upside down spray",
     "avoid",

@@ -29,6 +29,7 @@ FIXED = {
     # An exception.
     "avoid coins - lap > 6 unless fire or spray": ["avoid coins - lap > 6 and not (fire or spray)"],
     "avoid fire unless spray or boss_dead": ["avoid fire and not (spray or boss_dead)"],
+    "keep fire or spray unless boss_dead and coins > 3": ["keep fire or spray or (boss_dead and coins > 3)"],
     "keep coins >= 3 unless fire and spray": ["keep coins >= 3 or (fire and spray)"],
     "keep fire implies spray unless boss_dead or coins > 3": ["keep fire implies spray or (boss_dead or coins > 3)"],
     "avoid (begins fire) then within 3 s (begins fire) unless once within 3 s spray": [
