@@ -46,6 +46,7 @@ _BEFORE_EVENTS: Final = frozenset(("while", "during"))
 _COMING: Final = ("come", "comes")
 _KEYWORDS: Final = ("reach", "keep", "avoid")
 """The words with which the rules of one line begin."""
+_FEWEST_RULES: Final = 3
 _BETWEEN: Final = (",", ";", "and", "but")
 """The words between two rules."""
 _MOST: Final = 64
@@ -95,18 +96,18 @@ def unread_rule(words: Words) -> str:
     rules = _rules(words)
     unread = [text for text, reading in rules if reading is None]
     clauses = [f"`{clause}`" for _, reading in rules if reading is not None for clause in reading.clauses]
-    if len(unread) != 1 or len(rules) < 3:
+    if len(unread) != 1:
         return ""
     return f"write each rule on a line of its own: {' and '.join(clauses)}; `{unread[0]}` is not understood"
 
 
 def _rules(words: Words) -> list[tuple[str, Reading | None]]:
-    """Return the rules of `avoid a, keep b, and avoid c`, each with its reading; none if there is one alone.
+    """Return the rules of `avoid a, keep b, and avoid c`, each with its reading; none if there are fewer.
 
-    Each begins with its own keyword.
+    Each begins with its own keyword. The first of two rules may be meant otherwise: `keep a or b, reach c`.
     """
     starts = [at for at in words.outer() if words.word(at) in _KEYWORDS and (not at or words.word(at - 1) in _BETWEEN)]
-    if len(starts) < 2 or starts[0] or not any(words.word(at) in (",", ";") for at in range(len(words))):
+    if len(starts) < _FEWEST_RULES or starts[0] or not any(words.word(at) in (",", ";") for at in range(len(words))):
         return []
     rules = []
     for start, stop in pairwise([*starts, len(words)]):
