@@ -88,9 +88,6 @@ class Answers(Conditions):
             Asked(Answer("now", State(f"previously {once}")), f"if `{state.text}` must come before it"),
         ]
 
-    def within_lasting_first(self, duration: Duration, state: State, length: Duration) -> Asked:
-        return self.within_lasting(state, duration, length)
-
     def eventually_then_until(self, duration: Duration, state: State, kept: State, end: State) -> list[Asked]:
         return self.within_then_until(state, duration, kept, end)
 

@@ -251,7 +251,8 @@ PHRASES: Final[Mapping[str, str]] = {
     "never goes away|never stops|stays on forever|must stay so|must stay that way|stays true forever|"
     "stays that way forever|is permanent|for ever",
     "stays_on": "stays|stays on|must stay|must stay on|remains|stays active|must last|lasts|keeps on|remains on|"
-    "stays true|remains true|must remain|must hold|has to stay on|should stay on|goes on|continues|stay on|remain on|holds|keeps going|stays up",
+    "stays true|remains true|must remain|must hold|has to stay on|should stay on|goes on|continues|stay on|"
+    "remain on|holds|keeps going|stays up",
     "anymore": "anymore|any more|any longer|now",
     "no_longer": "is no longer",
     "by_then": "by then|first|in time|in this time|in that time|in meantime|meanwhile|in between",

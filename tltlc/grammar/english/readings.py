@@ -54,7 +54,17 @@ _MOST: Final = 64
 
 
 class Meanings(
-    Exceptions, Toggles, Alternatives, CountsSince, TimedAnswers, LaterTimes, Windows, Periods, Bounds, Extremes, Transitions
+    Exceptions,
+    Toggles,
+    Alternatives,
+    CountsSince,
+    TimedAnswers,
+    LaterTimes,
+    Windows,
+    Periods,
+    Bounds,
+    Extremes,
+    Transitions,
 ):
     """The meanings of all rules of the grammar."""
 
