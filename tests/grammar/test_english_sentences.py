@@ -452,6 +452,46 @@ ONE_READING = {
     "coins only when phase is shift": ["keep coins > 0 implies phase is shift"],
     "when fire, no coins": ["keep fire implies coins == 0"],
     "when boss_dead, more coins than at the start": ["keep boss_dead implies coins > initial(coins)"],
+    # Exceptions.
+    "never phase is shift when health < 5 unless boss_dead": ["keep phase is shift and health < 5 implies boss_dead"],
+    "avoid fire if spray unless boss_dead": ["keep fire and spray implies boss_dead"],
+    "never fire when spray and health < 5 unless boss_dead": ["keep fire and spray and health < 5 implies boss_dead"],
+    "fire must not happen while spray unless boss_dead": ["keep fire and spray implies boss_dead"],
+    "phase is not shift before phase is menu": ["require phase is not shift weak_until phase is menu"],
+    "keep fire implies coins <= 9 and (lap >= 1 except spray)": [
+        "keep fire implies coins <= 9 and (lap >= 1 or spray)"
+    ],
+    "keep fire implies health > 5 except when spray or boss_dead": [
+        "keep fire implies health > 5 or spray or boss_dead"
+    ],
+    "keep health > 5 except spray or boss_dead": ["keep health > 5 or spray or boss_dead"],
+    "keep fire implies coins <= 9 except within 5 s after begins spray": [
+        "keep fire implies coins <= 9 or once within 5 s begins spray"
+    ],
+    "keep coins <= 9 except in the first 5 s of spray": ["keep coins <= 9 or once within 5 s begins spray"],
+    # Two conditions.
+    "never both once fire and once spray": ["avoid once fire and once spray"],
+    "never both coins > 3 and begins spray": ["avoid coins > 3 and begins spray"],
+    "when fire, never both spray and boss_dead": ["keep fire implies not (spray and boss_dead)"],
+    "never both spray and boss_dead when fire": ["keep fire implies not (spray and boss_dead)"],
+    "keep fire and spray if boss_dead": ["keep boss_dead implies fire and spray"],
+    # What must not change while something holds.
+    "when spray, coins may not exceed 5": ["keep spray implies coins <= 5"],
+    "when spray coins must not be more than 5": ["keep spray implies coins <= 5"],
+    "phase must not go from menu to results directly": ["avoid previously (phase is menu) and phase is results"],
+    "cannot go straight from menu to results": ["avoid previously (phase is menu) and phase is results"],
+    # Windows.
+    "when fire begins, spray after at least 0.5 s and at most 2 s": [
+        "keep begins fire implies next after 0.5 s eventually within 1.5 s spray"
+    ],
+    "spray at least 0.5 s and at most 2 s after fire": [
+        "keep fire implies next after 0.5 s eventually within 1.5 s spray"
+    ],
+    "fire only if spray was at most 5 s ago": ["keep fire implies once within 5 s spray"],
+    "when fire, spray within 5 s and then stays so": ["keep fire implies eventually within 5 s always spray"],
+    "when fire, spray within 5 steps and stays so for 3 steps": [
+        "keep fire implies eventually within 5 steps always for 3 steps spray"
+    ],
     # The order of conditions.
     "phase shift must always directly follow menu": ["keep begins phase is shift implies previously phase is menu"],
     "phase is menu must be immediately followed by phase is shift": ["keep ends phase is menu implies phase is shift"],
@@ -540,7 +580,96 @@ ONCE_OR_ANEW = [
         "if anew at each step while it lasts",
     ),
 ]
+NO_SOONER = [
+    (
+        "keep fire implies (always for 0.5 s not spray) and next after 0.5 s eventually within 1.5 s spray",
+        "if `spray` must not come earlier",
+    ),
+    ("keep fire implies next after 0.5 s eventually within 1.5 s spray", "if `spray` may come earlier, too"),
+]
+LONG_AGO = [
+    ("keep fire implies time_holding(once spray) >= 5 s", "if some `spray` was at least 5 s ago"),
+    (
+        "keep fire implies once spray and time_since(spray) >= 5 s",
+        "if the last `spray` was, and none has come since then",
+    ),
+]
+LONG_AGO_IN_STEPS = [
+    ("keep fire implies time_holding(once spray) >= 5 s", "if some `spray` was at least 50 steps ago"),
+    LONG_AGO[1],
+]
+NOT_SOON_AFTER = [
+    (
+        "keep fire implies time_since(spray) >= 5 s",
+        "if no `spray` may be less than 5 s ago, and none need have come",
+    ),
+    *LONG_AGO,
+]
+NOT_BEFORE_UNLESS = [
+    ("keep fire implies once spray or boss_dead", "if `boss_dead` counts only at the step with `fire`"),
+    ("keep fire implies once (spray or boss_dead)", "if an earlier `boss_dead` counts, too"),
+]
+STAYS_UNTIL = [
+    (
+        "keep begins fire implies eventually within 5 s (health < 5 and (health < 5 weak_until spray))",
+        "if play may end before `spray`",
+    ),
+    (
+        "keep begins fire implies eventually within 5 s (health < 5 and (health < 5 until spray))",
+        "if `spray` must come",
+    ),
+]
 SEVERAL_READINGS = {
+    "fire not before spray unless boss_dead": NOT_BEFORE_UNLESS,
+    "not fire before spray unless boss_dead": NOT_BEFORE_UNLESS,
+    "never fire before spray unless boss_dead": NOT_BEFORE_UNLESS,
+    "keep coins <= 9 and lap >= 1 unless spray": [
+        ("keep coins <= 9 and lap >= 1 or spray", "if `spray` excuses all of it"),
+        ("keep coins <= 9 and (lap >= 1 or spray)", "if `spray` excuses `lap >= 1` alone"),
+    ],
+    "keep fire implies coins <= 9 and lap >= 1 unless spray": [
+        ("keep fire implies coins <= 9 and lap >= 1 or spray", "if `spray` excuses all of it"),
+        ("keep fire implies coins <= 9 and (lap >= 1 or spray)", "if `spray` excuses `lap >= 1` alone"),
+    ],
+    "keep coins <= 9 except within 5 s after spray": [
+        ("keep coins <= 9 or once within 5 s begins spray", "if the time counts from where `spray` begins"),
+        ("keep coins <= 9 or once within 5 s spray", "if it counts from each step with `spray`"),
+    ],
+    "keep coins <= 3 and coins == 0 if phase is menu": [
+        ("keep coins <= 3", "keep phase is menu implies coins == 0", "if `coins <= 3` must hold at every step"),
+        (
+            "keep phase is menu implies coins <= 3 and coins == 0",
+            "if all of it is asked for with `phase is menu` alone",
+        ),
+    ],
+    "while spray health must not rise": [
+        ("keep spray and previously spray implies health <= previous(health)", "within each `spray`"),
+        ("keep spray implies health <= previous(health)", "also from the step before it begins"),
+    ],
+    "while spray, coins must not be more than previous(coins)": [
+        ("keep spray and previously spray implies coins <= previous(coins)", "within each `spray`"),
+        ("keep spray implies coins <= previous(coins)", "also from the step before it begins"),
+    ],
+    "keep times(fire) <= 5 and no two fire within 2 s": [
+        ("keep times(fire) <= 5", "avoid (begins fire) then within 2 s (begins fire)", "if steps in a row count once"),
+        ("keep times(fire) <= 5", "avoid fire then within 2 s fire", "if each step counts"),
+    ],
+    "keep times(fire) <= 5 and fire at most once every 2 s": [
+        ("keep times(fire) <= 5", "avoid (begins fire) then within 2 s (begins fire)", "if steps in a row count once"),
+        ("keep times(fire) <= 5", "avoid fire then within 2 s fire", "if each step counts"),
+    ],
+    "when fire, spray no sooner than 0.5 s and no later than 2 s": NO_SOONER,
+    "when fire, spray after 0.5 s at the earliest and 2 s at the latest": NO_SOONER,
+    "when fire, spray within 2 s but no sooner than 0.5 s": NO_SOONER,
+    "spray no sooner than 0.5 s and no later than 2 s after fire": NO_SOONER,
+    "fire only if spray happened at least 5 s ago": LONG_AGO,
+    "fire only if spray was at least 50 steps ago": LONG_AGO_IN_STEPS,
+    "fire no sooner than 5 s after spray": NOT_SOON_AFTER,
+    "fire only at least 5 s after spray": NOT_SOON_AFTER,
+    "after begins fire, health < 5 within 5 s and then stays until spray": STAYS_UNTIL,
+    "after begins fire, health < 5 within 5 s and stays there until spray": STAYS_UNTIL,
+    "after begins fire, health < 5 within 5 s and then stays so until spray": STAYS_UNTIL,
+    "after begins fire, health < 5 within 5 s and then stays stopped until spray": STAYS_UNTIL,
     "reach times(fire) >= 3 before phase is menu": [
         (
             "require phase is not menu until (times(fire) >= 3 and phase is not menu)",
@@ -899,6 +1028,11 @@ SEVERAL_READINGS = {
 }
 
 NO_READING = (
+    "never fire after spray unless boss_dead",  # once spray has been, or from its step on
+    "never fire or spray when boss_dead unless coins > 3",
+    "fire before spray unless boss_dead",
+    "when fire, spray within 5 s and then stays stopped until boss_dead",  # which value means that it is stopped?
+    "spray at least 5 s after fire",  # it lasts so long, or comes so late
     "health never more than 20 above its highest",  # which it never is
     "never fire or spray",
     "reach not fire within 5 s",
@@ -923,6 +1057,7 @@ UNSAYABLE = {
     "every third fire must be spray": "no clause can say what holds at each third `fire`",
     "at some point health is 30 higher than 2 s ago": "no clause can say what `health` was 2 s ago",
     "health never falls by more than 5 in 30 s": "no clause can say what `health` was 30 s ago",
+    "when fire, spray after at least 1 s and at most 90 s": "a clause that looks 90 s ahead has too many states",
     "fire between 50 s and 80 s after spray": "a clause that looks 80 s ahead has too many states",
     "if spray then once between 50 s and 80 s fire": "no short clause says that `fire` was at least 50 s ago",
     "if spray then times(fire) <= 3 within 5 s": "`times(fire) <= 3` counts from the first step on",

@@ -207,11 +207,39 @@ def test_a_condition_behind_a_rule_is_about_the_event_or_its_answer(clause: str,
     assert quoted(clause) == readings
 
 
-@pytest.mark.parametrize("word", ["in each", "per", "between", "during", "since the", "for", "within", "every", "each"])
+@pytest.mark.parametrize(
+    "word", ["in each", "per", "between", "during", "since the", "for", "within", "every", "each", "except"]
+)
 def test_a_word_of_english_behind_a_number_is_no_unit(word: str) -> None:
     error = error_of(f"keep times(hit) <= 3 {word} hidden")
     assert error.code != "TLT0111"
     assert "the units are" not in (error.help or "")
+
+
+def test_an_exception_behind_a_number_gets_the_whole_clause() -> None:
+    error = error_of("keep alarm implies hidden and (speed <= 3 except seen)")
+    assert error.help == "write `keep alarm implies hidden and (speed <= 3 or seen)`"
+
+
+def test_no_help_has_a_word_that_is_not_read() -> None:
+    error = error_of("keep alarm implies speed <= 3 apart within 5 s after begins hidden")
+    assert "apart" not in (error.help or "")
+
+
+@pytest.mark.parametrize("clause", ["when alarm, not both hidden and seen", "not both hidden and seen when alarm"])
+def test_not_both_asks_for_neither_of_them(clause: str) -> None:
+    assert error_of(clause).help == "write `keep alarm implies not (hidden and seen)`"
+
+
+def test_what_is_not_so_before_something_else_is_no_goal() -> None:
+    assert (
+        error_of("mode is not dive before mode is wave").help
+        == "write `require mode is not dive weak_until mode is wave`"
+    )
+
+
+def test_a_time_from_the_first_step_with_a_condition_on_counts_no_steps_in_a_row() -> None:
+    assert "in a row" not in (error_of("hit only if seen was at least 5 s ago").help or "")
 
 
 def test_another_word_behind_a_number_is_no_unit() -> None:

@@ -8,11 +8,15 @@ from tltlc.core.record import record
 from tltlc.grammar.english.conditions import Conditions
 from tltlc.grammar.english.events import Event, as_state
 from tltlc.grammar.english.quantities import Duration
+from tltlc.grammar.english.terminals import Term
 from tltlc.grammar.mistakes.sentences.answers import Answer
 from tltlc.grammar.mistakes.sentences.states import AND, ATOM, OR, State, joined
 
 MOST_STEPS: Final = 8
 """The most steps after which a condition must hold: a monitor has up to two to the power of them states."""
+
+_LONGEST_WINDOW: Final = 80
+"""The most steps of a window after an event: a monitor of a longer one takes too long to build."""
 
 _MOST_PREVIOUS: Final = 3
 """The most times that `previously` is repeated."""
@@ -126,7 +130,7 @@ class Answers(Conditions):
         length = _difference(first, last)
         if length is None or is_negative(state):
             return None
-        if not 0 < self.steps(first) <= MOST_STEPS:
+        if not 0 < self.steps(first) <= MOST_STEPS or self.steps(length) > _LONGEST_WINDOW:
             before = round(self.steps(last)) - 1
             if self._step_s and before > 0:
                 self.limits.append(
@@ -144,7 +148,12 @@ class Answers(Conditions):
             for asked in _until(kept, end)
         ]
 
-    def within_and_until(self, state: State, duration: Duration, end: State) -> list[Asked]:
+    def within_and_until(self, state: State, duration: Duration, *rest: Term | State) -> list[Asked] | None:
+        """Return the answer of `a within 5 s and stays so until b`, perhaps with the name of a or its value."""
+        end = rest[-1]
+        assert isinstance(end, State)
+        if any(isinstance(part, Term) and part.text not in state.text.split() for part in rest):
+            return None
         return self.within_then_until(state, duration, state, end)
 
     def within_then_lasting(self, state: State, duration: Duration, kept: State, length: Duration) -> Asked:

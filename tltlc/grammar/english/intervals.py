@@ -110,10 +110,6 @@ class Intervals(Rules):
     def after_until_keep(self, start: State, end: State, state: State) -> _Found:
         return self.keep_after_until(state, start, end)
 
-    def avoid_while_unless(self, state: State, during: State, excuse: State) -> _Found:
-        both = joined([state, during], "and")
-        return Reading((f"keep {both.at(OR)} implies {excuse.at(OR)}",))
-
     # Until, at first and at last.
 
     def until_rule(self, state: State, end: State) -> _Found:
@@ -172,6 +168,8 @@ class Intervals(Rules):
     # At most so often in a time, and so long apart.
 
     def count_within(self, counted: Counted, duration: Duration) -> _Found:
+        if "times(" in counted.state.text:
+            return None  # a count of its own
         number = int(counted.number) - (counted.sign == "<") if counted.number.isdecimal() else 0
         if counted.sign in ("<=", "<") and number == 1 and counted.state.level == ATOM:
             return _not_again(counted.state, duration)

@@ -219,11 +219,17 @@ def _is_held(expression: Expr) -> bool:
     return isinstance(expression, CallExpr) and expression.name == "time_holding"
 
 
+def _is_ever(held: Expr) -> bool:
+    """Whether a time counts from the first step with a condition on, as that of `time_holding(once a)` does."""
+    inner = held.arguments[0].value if isinstance(held, CallExpr) and held.arguments else None
+    return isinstance(inner, Unary) and inner.op == "once" and inner.bound is None
+
+
 def _of_time(comparison: BinaryExpr, source: SourceFile, step_s: float) -> str:
     """Return how many steps in a row take a time, which is 0 s at the first of them, and the time of one step less."""
     limit = comparison.right
     steps = _steps(limit, step_s) if isinstance(limit, NumberExpr) else 0.0
-    if not steps:
+    if not steps or _is_ever(comparison.left):
         return ""
     number = (ceil(steps) if comparison.op == ">=" else floor(steps) + 1) + 1
     if number > _MOST_STEPS:

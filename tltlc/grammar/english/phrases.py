@@ -276,6 +276,9 @@ PHRASES: Final[Mapping[str, str]] = {
     "means": "means|means that|implies that",
     "count_of": "count|number of|number of times",
     "duration_of": "duration|duration of|time_in|hold_time|length of|how long",
+    "happened": "happened|has happened|was|occurred|has occurred|came|has come|was true|was last true|held|began",
+    "no_sooner": "no sooner than|no earlier than|not sooner than|not earlier than|not before|never sooner than|"
+    "never earlier than|must not come sooner than|must not come earlier than",
     "from_now": "later|from now|afterwards",
     "ago": "ago|earlier|before",
     "previous": "previous|prev|old|previous value of|last value of|last",

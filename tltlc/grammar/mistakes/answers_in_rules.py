@@ -13,6 +13,7 @@ from tltlc.grammar.mistakes.english_times import time_at
 from tltlc.grammar.mistakes.one_reading import TEMPORAL, has_token, is_of_one_step
 from tltlc.grammar.mistakes.parse_failure import INFIX, ParseFailure, outer_indices
 from tltlc.grammar.mistakes.rephrasing import operand_text, text_of
+from tltlc.grammar.mistakes.sentences.validity import is_valid
 
 _RULES: Final = ("IMPLIES", "IFF")
 _GENERAL: Final = (
@@ -60,4 +61,7 @@ def answer_in_rule(failure: ParseFailure) -> Diagnostic | None:
     c, b, a = (operand_text(failure, *part) for part in parts)
     if not is_last:
         c = text_of(failure, *rest)
-    return failure.error("TLT0101", title, form.format(k=keyword, a=a, b=b, c=c, t=time, op=op), span=span)
+    help_ = form.format(k=keyword, a=a, b=b, c=c, t=time, op=op)
+    if not is_valid([text for text in help_.split("`")[1::2] if text.startswith(keyword)]):
+        help_ = _GENERAL.format(t=time)  # a word in it is not read
+    return failure.error("TLT0101", title, help_, span=span)

@@ -56,7 +56,7 @@ def chained_comparison(failure: ParseFailure) -> Diagnostic | None:
 _ARROWS: Final = {"==>": "implies", "-->": "implies", "<=>": "iff", "<==>": "iff", "<-->": "iff"}
 """Maps arrows of other languages to the words of the language."""
 NO_UNITS: Final = frozenset(
-    "a after also an and as at before between but by during each every for from if in is of on once only or per "
+    "a after also an and as at before between but by during each every except for from if in is of on once only or per "
     "provided since than that the then till to under unless until when whenever where while with within without".split()
 )
 """Words of English that stand behind a number, as in `at most 3 per lap`, and are no units."""

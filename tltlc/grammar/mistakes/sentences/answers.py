@@ -72,7 +72,8 @@ def answer_of(words: Words) -> Answer | None:
         # `not b within 5 s` may ask for one step without b, or for no step with it.
         if answer is None or answer.kind not in ("now", "lasting", "within"):
             return None
-        return replace(_negated(answer) or answer, is_negative=False, is_open=answer.kind == "within")
+        negated = _negated(answer)
+        return negated and replace(negated, is_negative=False, is_open=answer.kind == "within")
     words = words.without([*MODALS, ("keep",)])
     modal = words.find(MODALS)
     if modal is not None and not words[modal[0] + len(modal[1]) :].phrase(0, NOT):

@@ -69,7 +69,7 @@ def joined(states: list[State], operator: str) -> State:
 def state_of(words: Words) -> State | None:
     """Return the condition that words say, or None if they say none, or it is unclear which."""
     words = _trimmed(words)
-    if not words:
+    if not words or words.find([("not", "both")]):
         return None
     if _is_in_brackets(words):
         return state_of(words[1:-1])

@@ -89,7 +89,10 @@ def both_readings(words: Words) -> str | None:
         modal = left.find(MODALS)
         if modal is not None:
             left = left[: modal[0]].followed_by(left[modal[0] + len(modal[1]) :].without(COPULAS))
-        return _help(form, state_of(left), state_of(right))
+        state = state_of(left)
+        if form == _BEFORE and state is not None and (state.text.startswith("not ") or " is not " in state.text):
+            return None  # what must not come before something else
+        return _help(form, state, state_of(right))
     return _small_goal(words) or _counted_in_time(words) or _unknown_value(words) or _state_alone(words)
 
 

@@ -1,0 +1,176 @@
+"""What rules with an exception mean: `never a when b unless c`, `a not before b unless c`, `a and b unless c`."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Final
+
+from tltlc.core.record import replace
+from tltlc.grammar.english.answers import Asked, is_negative
+from tltlc.grammar.english.events import Event, as_state
+from tltlc.grammar.english.quantities import Change, Duration, Number, comparison
+from tltlc.grammar.english.rules import Reading, Rules, When, are_simple, begun_text
+from tltlc.grammar.english.terminals import Term
+from tltlc.grammar.mistakes.declared_names import DeclaredNames
+from tltlc.grammar.mistakes.sentences.answers import Answer
+from tltlc.grammar.mistakes.sentences.states import ATOM, OR, State, joined
+
+_COMPARED: Final = (" < ", " <= ", " > ", " >= ", " == ", " != ")
+"""The signs of conditions that are limits, as a rule for every step has."""
+_Found = Reading | list[Reading] | None
+
+
+class Excused(Rules):
+    """The meanings of the rules that something excuses, and of rules for two conditions."""
+
+    def __init__(self, names: DeclaredNames) -> None:
+        super().__init__(names)
+        self._counted_from: dict[str, str] = {}
+        """Maps the texts of exceptions to the step from which their time counts, where a sentence does not say it."""
+
+    # Exceptions in time.
+
+    def soon_after(self, duration: Duration, event: State) -> list[State]:
+        """Return the exceptions of `except within 5 s after a`: from where a begins, or from each step with it."""
+        begun = State(f"once within {duration.text} {begun_text(event)}")
+        if event.text.startswith(("begins ", "ends ")):
+            return [begun]
+        each = State(f"once within {duration.text} {event.at(ATOM)}")
+        self._counted_from[begun.text] = f"if the time counts from where `{event.text}` begins"
+        self._counted_from[each.text] = f"if it counts from each step with `{event.text}`"
+        return [begun, each]
+
+    def first_of(self, duration: Duration, event: State) -> State:
+        """Return the exception of `except in the first 5 s of a`."""
+        return State(f"once within {duration.text} {begun_text(event)}")
+
+    def now_unless(self, state: State, event: Event) -> Asked | None:
+        asked = super().now_unless(state, event)
+        return asked and replace(asked, condition=self._when_meant(event))
+
+    def unless(self, answers: list[Asked], event: Event) -> _Found:
+        reading = super().unless(answers, event) or self._kept_or(answers, event)
+        return replace(reading, condition=self._when_meant(event)) if isinstance(reading, Reading) else reading
+
+    def _kept_or(self, answers: list[Asked], event: Event) -> Reading | None:
+        """Return the rule of `keep a unless b or c`."""
+        asked = self.now_unless(answers[0].answer.state, event)
+        answer, exception = answers[0].answer, as_state(event)
+        is_plain = answer.kind == "now" and answer.keyword != "reach" and not answers[0].is_formula and not answers[1:]
+        if asked is None or not is_plain or exception is None or exception.level == ATOM:
+            return None
+        return Reading((f"keep {asked.answer.state.text}",))
+
+    def _when_meant(self, event: Event) -> str:
+        return self._counted_from.get(event.text, "") if isinstance(event, State) else ""
+
+    # What an exception excuses.
+
+    def excepted(self, state: State, exception: State) -> State | None:
+        """Return the condition of `(a unless b)`, in brackets."""
+        if not are_simple(state) or is_negative(state):
+            return None
+        return State(f"({joined([state, exception], 'or').text})")
+
+    def avoid_when_unless(self, state: State, when: When, during: State, exception: State) -> _Found:
+        if when == "after" or state.level == OR:
+            return None
+        both = joined([state, during], "and")
+        return Reading((f"keep {both.at(OR)} implies {exception.at(OR)}",))
+
+    def avoid_before_unless(self, state: State, first: State, exception: State) -> _Found:
+        """Return the readings of `a not before b unless c`: c excuses its own step, or all steps from it on."""
+        if not are_simple(state, first) or is_negative(state):
+            return None
+        came, excuse, a = State(f"once {first.at(ATOM)}"), f"`{exception.text}`", state.at(OR)
+        return [
+            Reading(
+                (f"keep {a} implies {joined([came, exception], 'or').text}",),
+                f"if {excuse} counts only at the step with `{state.text}`",
+            ),
+            Reading(
+                (f"keep {a} implies once {joined([first, exception], 'or').at(ATOM)}",),
+                f"if an earlier {excuse} counts, too",
+            ),
+        ]
+
+    def not_before_unless(self, state: State, first: State, exception: State) -> _Found:
+        return self.avoid_before_unless(state.negated(), first, exception) if is_negative(state) else None
+
+    def not_before(self, state: State, first: State) -> _Found:
+        return self.avoid_until(state.negated(), first) if is_negative(state) else None
+
+    def all_unless(self, *parts: State | Event) -> list[Asked] | None:
+        """Return the readings of `a and b unless c`: c excuses both, or b alone."""
+        readings = _excused(parts)
+        return [Asked(Answer("now", state), condition) for state, condition in readings] if readings else None
+
+    def keep_all_unless(self, *parts: State | Event) -> _Found:
+        return [Reading((f"keep {state.text}",), condition) for state, condition in _excused(parts)]
+
+    # Two conditions.
+
+    def both_sentences(self, first: Reading, second: Reading) -> Reading | None:
+        """Return the readings of `times(a) <= 5 and no two a within 2 s`: the limit is not about both."""
+        clauses, is_limit = first.clauses, any(sign in first.clauses[0] for sign in _COMPARED)
+        is_apart = is_limit and clauses[0].startswith("keep ") and second.clauses[0].startswith("avoid ")
+        if not second.condition or first.condition or clauses[1:] or not is_apart:
+            return super().both_sentences(first, second)
+        return Reading((*clauses, *second.clauses), second.condition)
+
+    def once_held(self, state: State) -> State:
+        return State(f"once {state.at(ATOM)}")
+
+    def avoid_both(self, one: State, other: State) -> Reading:
+        return Reading((f"avoid {joined([one, other], 'and').text}",))
+
+    def never_both(self, one: State, other: State) -> Asked:
+        return Asked(Answer("now", joined([one, other], "and").negated()))
+
+    def both_when(self, one: State, other: State, when: When, event: Event) -> _Found:
+        return self.first(when, event, [self.never_both(one, other)])
+
+    def all_when(self, *parts: State | Event | When) -> _Found:
+        """Return the readings of `a and b when c`: both only with c, or a at every step."""
+        *states, when, event = parts
+        condition = as_state(event) if not isinstance(event, str) else None
+        conditions = [state for state in states if isinstance(state, State)]
+        whole, *always = joined(conditions, "and"), *conditions[:-1]
+        if when in ("each", "after") or condition is None or not are_simple(*conditions) or "previous(" in whole.text:
+            return None
+        first, rule = joined(always, "and"), f"keep {condition.at(OR)} implies"
+        both = Reading((f"{rule} {whole.at(OR)}",))
+        if not any(sign in state.text for state in conditions for sign in _COMPARED):
+            return both
+        return [
+            Reading(
+                (f"keep {first.text}", f"{rule} {conditions[-1].at(OR)}"), f"if `{first.text}` must hold at every step"
+            ),
+            replace(both, condition=f"if all of it is asked for with `{condition.text}` alone"),
+        ]
+
+    # Answers that forbid what a number does.
+
+    def now_not_compared(self, left: Number, sign: str, right: Number) -> Asked | None:
+        state = comparison(left, sign, right)
+        return None if state is None else Asked(Answer("now", state.negated()))
+
+    def now_not_changed(self, term: Term, change: Change) -> Asked | None:
+        signs = {"rises": "<=", "falls": ">="}
+        if change not in signs:
+            return None
+        return Asked(Answer("now", State(f"{term.text} {signs[change]} previous({term.text})")))
+
+
+def _excused(parts: Sequence[State | Event]) -> list[tuple[State, str]]:
+    """Return what an exception behind several conditions leaves of them, with what tells the readings apart."""
+    exception = as_state(parts[-1])
+    states = [part for part in parts[:-1] if isinstance(part, State)]
+    if exception is None or not are_simple(*states) or any(map(is_negative, states[-1:])):
+        return []
+    *others, last = states
+    excused = State(f"({joined([last, exception], 'or').text})")
+    return [
+        (joined([joined(states, "and"), exception], "or"), f"if `{exception.text}` excuses all of it"),
+        (joined([*others, excused], "and"), f"if `{exception.text}` excuses `{last.text}` alone"),
+    ]
