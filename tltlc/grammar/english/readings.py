@@ -10,6 +10,7 @@ from tltlc.core.record import record
 from tltlc.grammar.english.alternatives import Alternatives
 from tltlc.grammar.english.bounds import Bounds
 from tltlc.grammar.english.counts_since import CountsSince
+from tltlc.grammar.english.event_windows import EventWindows
 from tltlc.grammar.english.events import Crossing
 from tltlc.grammar.english.exceptions import Exceptions
 from tltlc.grammar.english.excused import Excused
@@ -23,7 +24,6 @@ from tltlc.grammar.english.terminals import UNKNOWN, Term, known_terms, terms
 from tltlc.grammar.english.timed_answers import TimedAnswers
 from tltlc.grammar.english.toggles import Toggles
 from tltlc.grammar.english.transitions import Transitions
-from tltlc.grammar.english.event_windows import EventWindows
 from tltlc.grammar.english.windows import Windows
 from tltlc.grammar.mistakes.sentences.states import State
 from tltlc.grammar.mistakes.sentences.validity import is_valid
