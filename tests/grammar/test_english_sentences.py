@@ -462,9 +462,9 @@ ONE_READING = {
         "keep fire implies coins <= 9 and (lap >= 1 or spray)"
     ],
     "keep fire implies health > 5 except when spray or boss_dead": [
-        "keep fire implies health > 5 or spray or boss_dead"
+        "keep fire implies health > 5 or (spray or boss_dead)"
     ],
-    "keep health > 5 except spray or boss_dead": ["keep health > 5 or spray or boss_dead"],
+    "keep health > 5 except spray or boss_dead": ["keep health > 5 or (spray or boss_dead)"],
     "keep fire implies coins <= 9 except within 5 s after begins spray": [
         "keep fire implies coins <= 9 or once within 5 s begins spray"
     ],
@@ -474,7 +474,7 @@ ONE_READING = {
     "never both coins > 3 and begins spray": ["avoid coins > 3 and begins spray"],
     "when fire, never both spray and boss_dead": ["keep fire implies not (spray and boss_dead)"],
     "never both spray and boss_dead when fire": ["keep fire implies not (spray and boss_dead)"],
-    "keep fire and spray if boss_dead": ["keep boss_dead implies fire and spray"],
+    "keep lap >= 1 and (health > 5 unless spray)": ["keep lap >= 1 and (health > 5 or spray)"],
     # What must not change while something holds.
     "when spray, coins may not exceed 5": ["keep spray implies coins <= 5"],
     "when spray coins must not be more than 5": ["keep spray implies coins <= 5"],
@@ -624,8 +624,8 @@ SEVERAL_READINGS = {
     "not fire before spray unless boss_dead": NOT_BEFORE_UNLESS,
     "never fire before spray unless boss_dead": NOT_BEFORE_UNLESS,
     "keep coins <= 9 and lap >= 1 unless spray": [
-        ("keep coins <= 9 and lap >= 1 or spray", "if `spray` excuses all of it"),
-        ("keep coins <= 9 and (lap >= 1 or spray)", "if `spray` excuses `lap >= 1` alone"),
+        ("keep (coins <= 9 and lap >= 1) or spray", "if `spray` is an exception of all before it"),
+        ("keep coins <= 9 and (lap >= 1 or spray)", "if it is one of `lap >= 1` alone"),
     ],
     "keep fire implies coins <= 9 and lap >= 1 unless spray": [
         ("keep fire implies coins <= 9 and lap >= 1 or spray", "if `spray` excuses all of it"),
@@ -641,6 +641,10 @@ SEVERAL_READINGS = {
             "keep phase is menu implies coins <= 3 and coins == 0",
             "if all of it is asked for with `phase is menu` alone",
         ),
+    ],
+    "keep fire and spray if boss_dead": [
+        ("keep fire", "keep boss_dead implies spray", "if `fire` must hold at every step"),
+        ("keep boss_dead implies fire and spray", "if all of it is asked for with `boss_dead` alone"),
     ],
     "while spray health must not rise": [
         ("keep spray and previously spray implies health <= previous(health)", "within each `spray`"),
@@ -1028,6 +1032,7 @@ SEVERAL_READINGS = {
 }
 
 NO_READING = (
+    "avoid (fire unless spray)",  # an exception from what is forbidden is no `or`
     "never fire after spray unless boss_dead",  # once spray has been, or from its step on
     "never fire or spray when boss_dead unless coins > 3",
     "fire before spray unless boss_dead",

@@ -47,7 +47,7 @@ def test_a_letter_is_no_name_of_the_file() -> None:
 @pytest.mark.parametrize(
     "typed",
     [
-        "if fire then spray otherwise wave",
+        "if fire then spray besides wave",
         "keep fire implies trading twice",
         "when sun, rain and wind, fire",
         "whenever the quick brown lazy old fox jumps, fire",

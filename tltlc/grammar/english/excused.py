@@ -28,6 +28,9 @@ class Excused(Rules):
         self._counted_from: dict[str, str] = {}
         """Maps the texts of exceptions to the step from which their time counts, where a sentence does not say it."""
 
+        self._early: set[str] = set()
+        """The exceptions of the first seconds of something."""
+
     # Exceptions in time.
 
     def soon_after(self, duration: Duration, event: State) -> list[State]:
@@ -42,13 +45,18 @@ class Excused(Rules):
 
     def first_of(self, duration: Duration, event: State) -> State:
         """Return the exception of `except in the first 5 s of a`."""
-        return State(f"once within {duration.text} {begun_text(event)}")
+        early = State(f"once within {duration.text} {begun_text(event)}")
+        self._early.add(early.text)
+        return early
 
     def now_unless(self, state: State, event: Event) -> Asked | None:
         asked = super().now_unless(state, event)
         return asked and replace(asked, condition=self._when_meant(event))
 
     def unless(self, answers: list[Asked], event: Event) -> _Found:
+        answer = answers[0].answer
+        if answer.kind == "always" and answer.is_negative and isinstance(event, State) and event.text in self._early:
+            return None  # `avoid a except in the first 5 s of b`, which `avoid_except_first` reads
         reading = super().unless(answers, event) or self._kept_or(answers, event)
         return replace(reading, condition=self._when_meant(event)) if isinstance(reading, Reading) else reading
 
@@ -66,11 +74,19 @@ class Excused(Rules):
 
     # What an exception excuses.
 
-    def excepted(self, state: State, exception: State) -> State | None:
-        """Return the condition of `(a unless b)`, in brackets."""
-        if not are_simple(state) or is_negative(state):
+    def now_excepted(self, *parts: State | Event) -> Asked | None:
+        """Return the answer of `a and (b unless c)`: the brackets say that c excuses b alone."""
+        *states, event = parts
+        excused = self.now_unless(last, event) if isinstance(last := states[-1], State) else None
+        if excused is None:
             return None
-        return State(f"({joined([state, exception], 'or').text})")
+        others = [state for state in states[:-1] if isinstance(state, State)]
+        whole = joined([*others, State(f"({excused.answer.state.text})")], "and")
+        return replace(excused, answer=Answer("now", whole))
+
+    def keep_excepted(self, *parts: State | Event) -> Reading | None:
+        asked = self.now_excepted(*parts)
+        return None if asked is None else Reading((f"keep {asked.answer.state.text}",), asked.condition)
 
     def avoid_when_unless(self, state: State, when: When, during: State, exception: State) -> _Found:
         if when == "after" or state.level == OR:
@@ -105,9 +121,6 @@ class Excused(Rules):
         readings = _excused(parts)
         return [Asked(Answer("now", state), condition) for state, condition in readings] if readings else None
 
-    def keep_all_unless(self, *parts: State | Event) -> _Found:
-        return [Reading((f"keep {state.text}",), condition) for state, condition in _excused(parts)]
-
     # Two conditions.
 
     def both_sentences(self, first: Reading, second: Reading) -> Reading | None:
@@ -139,14 +152,11 @@ class Excused(Rules):
         if when in ("each", "after") or condition is None or not are_simple(*conditions) or "previous(" in whole.text:
             return None
         first, rule = joined(always, "and"), f"keep {condition.at(OR)} implies"
-        both = Reading((f"{rule} {whole.at(OR)}",))
-        if not any(sign in state.text for state in conditions for sign in _COMPARED):
-            return both
         return [
             Reading(
                 (f"keep {first.text}", f"{rule} {conditions[-1].at(OR)}"), f"if `{first.text}` must hold at every step"
             ),
-            replace(both, condition=f"if all of it is asked for with `{condition.text}` alone"),
+            Reading((f"{rule} {whole.at(OR)}",), f"if all of it is asked for with `{condition.text}` alone"),
         ]
 
     # Answers that forbid what a number does.
