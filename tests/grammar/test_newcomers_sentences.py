@@ -21,6 +21,9 @@ ONE = {
         "require eventually within 5 min health > 80",
         "keep health > 80 implies always health >= 60",
     ],
+    "keep health - previous(health) between -2 and 2 unless begins fire or ends fire": [
+        "keep (health - previous(health) >= -2 and health - previous(health) <= 2) or (begins fire or ends fire)"
+    ],
     "for the last 10 s fire": ["require eventually always time_holding(fire) >= 10 s"],
     "when phase was menu and is not menu anymore then fire": ["keep ends (phase is menu) implies fire"],
     "whenever fire begins, spray within 20 s unless fire ends before that": [
@@ -29,6 +32,10 @@ ONE = {
     "keep fire implies spray unless once boss_dead": ["keep fire implies spray or once boss_dead"],
 }
 SEVERAL = {
+    "keep begins fire implies eventually within 4 s (phase is menu or phase is shift) unless once spray": [
+        "keep begins fire implies once spray or (eventually within 4 s (phase is menu or phase is shift))",
+        "keep begins fire implies eventually within 4 s ((phase is menu or phase is shift) or once spray)",
+    ],
     "keep fire implies once before spray": [
         "keep fire implies once spray",
         "keep fire implies previously once spray",

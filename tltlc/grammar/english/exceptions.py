@@ -138,6 +138,8 @@ def _excused(state: State, excuse: State, *, is_avoided: bool) -> _Found:
         whole = f"keep {state.at(ATOM)} or {excuse.at(ATOM)}"
         if state.level in (ATOM, OR):
             return Reading((f"keep {state.at(OR)} or {excuse.at(ATOM)}",))
+        if _is_range(state):
+            return Reading((whole,))
         first, _, last = state.text.rpartition(" and ")
         apart = None if "(" in state.text else f"keep {first} and ({last} or {excuse.at(ATOM)})"
     if apart is None or state.level > OR:
@@ -146,6 +148,12 @@ def _excused(state: State, excuse: State, *, is_avoided: bool) -> _Found:
         Reading((whole,), f"if `{excuse.text}` is an exception of all before it"),
         Reading((apart,), f"if it is one of `{last}` alone"),
     ]
+
+
+def _is_range(state: State) -> bool:
+    """Whether a condition is `x >= 2 and x <= 5`, which nobody takes apart."""
+    low, _, high = state.text.partition(" and ")
+    return low.partition(" >= ")[0] == high.partition(" <= ")[0] != ""
 
 
 def _plain(state: State) -> str:

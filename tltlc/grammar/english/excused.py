@@ -72,6 +72,18 @@ class Excused(Rules):
     def _when_meant(self, event: Event) -> str:
         return self._counted_from.get(event.text, "") if isinstance(event, State) else ""
 
+    def eventually_within_unless(self, duration: Duration, state: State, event: Event) -> list[Asked] | None:
+        """Return the answers of `eventually within 4 s a unless b`: b at the step of the condition, or in that time."""
+        exception = as_state(event)
+        if exception is None:
+            return None
+        excused = State(f"{exception.at(OR)} or (eventually within {duration.text} {state.at(ATOM)})", OR)
+        what = f"if `{exception.text}`"
+        return [
+            Asked(Answer("now", excused), f"{what} counts at the step of the condition alone", is_formula=True),
+            Asked(Answer("within", joined([state, exception], "or"), duration.text), f"{what} in that time is enough"),
+        ]
+
     # What an exception excuses.
 
     def now_excepted(self, *parts: State | Event) -> Asked | None:
