@@ -66,6 +66,13 @@ class Conditions(Quantities):
         self.settled[f"ends {term.text}"] = State(term.text).negated()
         return State(f"ends {term.text}")
 
+    def comparison_begins(self, state: State) -> State | None:
+        """Return the step at which a comparison becomes true; `coins when a started` is no comparison that starts."""
+        return None if "value_at(" in state.text else self.begins_condition(state)
+
+    def comparison_ends(self, state: State) -> State | None:
+        return None if "value_at(" in state.text else self.ends_condition(state)
+
     def begins_condition(self, state: State) -> State:
         edge = State(f"begins ({state.text})")
         self.settled[edge.text] = state

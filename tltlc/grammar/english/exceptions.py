@@ -1,17 +1,24 @@
-"""What rules with an exception mean: `avoid a unless b or c`, `avoid a and b except for the first 1 s of b`."""
+"""What rules with an exception mean: `avoid a unless b or c`, `a not before b unless c`, `a except the first 1 s`."""
 
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from typing import Final
 
-from tltlc.grammar.english.answers import Asked
+from tltlc.core.record import replace
+from tltlc.grammar.english.answers import Asked, is_negative
 from tltlc.grammar.english.events import Event, Held, as_state
-from tltlc.grammar.english.quantities import Duration
-from tltlc.grammar.english.rules import Reading, Rules
+from tltlc.grammar.english.quantities import Change, Duration, Number, comparison
+from tltlc.grammar.english.rules import Reading, Rules, When, are_simple, begun_text
+from tltlc.grammar.english.terminals import Term
+from tltlc.grammar.mistakes.declared_names import DeclaredNames
+from tltlc.grammar.mistakes.sentences.answers import Answer
 from tltlc.grammar.mistakes.sentences.states import AND, ATOM, OR, State, joined
 from tltlc.grammar.mistakes.sentences.vocabulary import NEGATED_SIGN
 
+_COMPARED: Final = (" < ", " <= ", " > ", " >= ", " == ", " != ")
+"""The signs of conditions that are limits, as a rule for every step has."""
 _TIMED: Final = re.compile(r"time_holding\((?P<held>[^,]*)\) (?P<sign><=|>=|<|>) (?P<time>[\d.]+ \w+)")
 """How long a condition has held, compared with a time."""
 _EXACT: Final = 1e-12
@@ -21,14 +28,173 @@ _Found = Reading | list[Reading] | None
 
 
 class Exceptions(Rules):
-    """The meanings of the rules with an exception."""
+    """The meanings of the rules with an exception, and of rules for two conditions."""
+
+    def __init__(self, names: DeclaredNames) -> None:
+        super().__init__(names)
+        self._counted_from: dict[str, str] = {}
+        """Maps the texts of exceptions to the step from which their time counts, where a sentence does not say it."""
+        self._early: set[str] = set()
+        """The exceptions of the first seconds of something."""
+
+    # Exceptions in time.
+
+    def soon_after(self, duration: Duration, event: State) -> list[State]:
+        """Return the exceptions of `except within 5 s after a`: from where a begins, or from each step with it."""
+        begun = State(f"once within {duration.text} {begun_text(event)}")
+        if event.text.startswith(("begins ", "ends ")):
+            return [begun]
+        each = State(f"once within {duration.text} {event.at(ATOM)}")
+        self._counted_from[begun.text] = f"if the time counts from where `{event.text}` begins"
+        self._counted_from[each.text] = f"if it counts from each step with `{event.text}`"
+        return [begun, each]
+
+    def first_of(self, duration: Duration, event: State) -> State:
+        """Return the exception of `except in the first 5 s of a`."""
+        early = State(f"once within {duration.text} {begun_text(event)}")
+        self._early.add(early.text)
+        return early
+
+    def now_unless(self, state: State, event: Event) -> Asked | None:
+        asked = super().now_unless(state, event)
+        return asked and replace(asked, condition=self._when_meant(event))
+
+    def unless(self, answers: list[Asked], event: Event) -> _Found:
+        answer = answers[0].answer
+        if answer.kind == "always" and answer.is_negative and isinstance(event, State) and event.text in self._early:
+            return None  # `avoid a except in the first 5 s of b`, which `avoid_except_first` reads
+        reading = self._excused_rule(answers, event) or self._kept_or(answers, event)
+        return replace(reading, condition=self._when_meant(event)) if isinstance(reading, Reading) else reading
+
+    def _kept_or(self, answers: list[Asked], event: Event) -> Reading | None:
+        """Return the rule of `keep a unless b or c`."""
+        asked = self.now_unless(answers[0].answer.state, event)
+        answer, exception = answers[0].answer, as_state(event)
+        is_plain = answer.kind == "now" and answer.keyword != "reach" and not answers[0].is_formula and not answers[1:]
+        if asked is None or not is_plain or exception is None or exception.level == ATOM:
+            return None
+        return Reading((f"keep {asked.answer.state.text}",))
+
+    def _when_meant(self, event: Event) -> str:
+        return self._counted_from.get(event.text, "") if isinstance(event, State) else ""
+
+    def eventually_within_unless(self, duration: Duration, state: State, event: Event) -> list[Asked] | None:
+        """Return the answers of `eventually within 4 s a unless b`: b at the step of the condition, or in that time."""
+        exception = as_state(event)
+        if exception is None:
+            return None
+        excused = State(f"{exception.at(OR)} or (eventually within {duration.text} {state.at(ATOM)})", OR)
+        what = f"if `{exception.text}`"
+        return [
+            Asked(Answer("now", excused), f"{what} counts at the step of the condition alone", is_formula=True),
+            Asked(Answer("within", joined([state, exception], "or"), duration.text), f"{what} in that time is enough"),
+        ]
+
+    # What an exception excuses.
+
+    def now_excepted(self, *parts: State | Event) -> Asked | None:
+        """Return the answer of `a and (b unless c)`: the brackets say that c excuses b alone."""
+        *states, event = parts
+        excused = self.now_unless(last, event) if isinstance(last := states[-1], State) else None
+        if excused is None:
+            return None
+        others = [state for state in states[:-1] if isinstance(state, State)]
+        whole = joined([*others, State(f"({excused.answer.state.text})")], "and")
+        return replace(excused, answer=Answer("now", whole))
+
+    def keep_excepted(self, *parts: State | Event) -> Reading | None:
+        asked = self.now_excepted(*parts)
+        return None if asked is None else Reading((f"keep {asked.answer.state.text}",), asked.condition)
+
+    def avoid_when_unless(self, state: State, when: When, during: State, exception: State) -> _Found:
+        if when == "after" or state.level == OR:
+            return None
+        both = joined([state, during], "and")
+        return Reading((f"keep {both.at(OR)} implies {exception.at(OR)}",))
+
+    def avoid_before_unless(self, state: State, first: State, exception: State) -> _Found:
+        """Return the readings of `a not before b unless c`: c excuses its own step, or all steps from it on."""
+        if not are_simple(state, first) or is_negative(state):
+            return None
+        came, excuse, a = State(f"once {first.at(ATOM)}"), f"`{exception.text}`", state.at(OR)
+        return [
+            Reading(
+                (f"keep {a} implies {joined([came, exception], 'or').text}",),
+                f"if {excuse} counts only at the step with `{state.text}`",
+            ),
+            Reading(
+                (f"keep {a} implies once {joined([first, exception], 'or').at(ATOM)}",),
+                f"if an earlier {excuse} counts, too",
+            ),
+        ]
+
+    def not_before_unless(self, state: State, first: State, exception: State) -> _Found:
+        return self.avoid_before_unless(state.negated(), first, exception) if is_negative(state) else None
+
+    def not_before(self, state: State, first: State) -> _Found:
+        return self.avoid_until(state.negated(), first) if is_negative(state) else None
+
+    def all_unless(self, *parts: State | Event) -> list[Asked] | None:
+        """Return the readings of `a and b unless c`: c excuses both, or b alone."""
+        readings = _excused_parts(parts)
+        return [Asked(Answer("now", state), condition) for state, condition in readings] if readings else None
+
+    # Two conditions.
+
+    def both_sentences(self, first: Reading, second: Reading) -> Reading | None:
+        """Return the readings of `times(a) <= 5 and no two a within 2 s`: the limit is not about both."""
+        clauses, is_limit = first.clauses, any(sign in first.clauses[0] for sign in _COMPARED)
+        is_apart = is_limit and clauses[0].startswith("keep ") and second.clauses[0].startswith("avoid ")
+        if not second.condition or first.condition or clauses[1:] or not is_apart:
+            return super().both_sentences(first, second)
+        return Reading((*clauses, *second.clauses), second.condition)
+
+    def once_held(self, state: State) -> State:
+        return State(f"once {state.at(ATOM)}")
+
+    def avoid_both(self, one: State, other: State) -> Reading:
+        return Reading((f"avoid {joined([one, other], 'and').text}",))
+
+    def never_both(self, one: State, other: State) -> Asked:
+        return Asked(Answer("now", joined([one, other], "and").negated()))
+
+    def both_when(self, one: State, other: State, when: When, event: Event) -> _Found:
+        return self.first(when, event, [self.never_both(one, other)])
+
+    def all_when(self, *parts: State | Event | When) -> _Found:
+        """Return the readings of `a and b when c`: both only with c, or a at every step."""
+        *states, when, event = parts
+        condition = as_state(event) if not isinstance(event, str) else None
+        conditions = [state for state in states if isinstance(state, State)]
+        whole, *always = joined(conditions, "and"), *conditions[:-1]
+        if when in ("each", "after") or condition is None or not are_simple(*conditions) or "previous(" in whole.text:
+            return None
+        first, rule = joined(always, "and"), f"keep {condition.at(OR)} implies"
+        return [
+            Reading(
+                (f"keep {first.text}", f"{rule} {conditions[-1].at(OR)}"), f"if `{first.text}` must hold at every step"
+            ),
+            Reading((f"{rule} {whole.at(OR)}",), f"if all of it is asked for with `{condition.text}` alone"),
+        ]
+
+    # Answers that forbid what a number does.
+
+    def now_not_compared(self, left: Number, sign: str, right: Number) -> Asked | None:
+        state = comparison(left, sign, right)
+        return None if state is None else Asked(Answer("now", state.negated()))
+
+    def now_not_changed(self, term: Term, change: Change) -> Asked | None:
+        signs = {"rises": "<=", "falls": ">="}
+        if change not in signs:
+            return None
+        return Asked(Answer("now", State(f"{term.text} {signs[change]} previous({term.text})")))
 
     def once_within(self, duration: Duration, state: State) -> State:
         return State(f"once within {duration.text} {state.at(ATOM)}")
 
     # Unless something holds.
 
-    def unless(self, answers: list[Asked], event: Event) -> _Found:
+    def _excused_rule(self, answers: list[Asked], event: Event) -> _Found:
         excuse, answer = as_state(event), answers[0].answer
         if excuse is None or len(answers) > 1 or answers[0].is_formula or answer.keyword == "reach":
             return super().unless(answers, event)
@@ -179,3 +345,17 @@ def _operand(state: State) -> str:
 def _with(state: State, denied: State) -> str:
     one = f"({state.text})" if state.level > AND or state.text.startswith(_PAST) else state.text
     return f"({one} and {denied.at(ATOM)})"
+
+
+def _excused_parts(parts: Sequence[State | Event]) -> list[tuple[State, str]]:
+    """Return what an exception behind several conditions leaves of them, with what tells the readings apart."""
+    exception = as_state(parts[-1])
+    states = [part for part in parts[:-1] if isinstance(part, State)]
+    if exception is None or not are_simple(*states) or any(map(is_negative, states[-1:])):
+        return []
+    *others, last = states
+    excused = State(f"({joined([last, exception], 'or').text})")
+    return [
+        (joined([joined(states, "and"), exception], "or"), f"if `{exception.text}` excuses all of it"),
+        (joined([*others, excused], "and"), f"if `{exception.text}` excuses `{last.text}` alone"),
+    ]

@@ -323,6 +323,10 @@ class Periods(Totals):
         asked = self.delayed(state, duration)
         return None if asked is None else self.first("when", event, [asked])
 
+    def reach_count_before(self, counted: Counted, end: State) -> _Found:
+        state = as_state(counted)
+        return None if state is None else self.reach_before(state, end)
+
     def reach_before(self, goal: State, end: State) -> _Found:
         a, b = goal.at(ATOM), end.negated().at(ATOM)
         own, same = joined([goal, end.negated()], "and").at(ATOM), f"`{end.text}` may come at the same step"

@@ -10,10 +10,8 @@ from tltlc.core.record import record
 from tltlc.grammar.english.alternatives import Alternatives
 from tltlc.grammar.english.bounds import Bounds
 from tltlc.grammar.english.counts_since import CountsSince
-from tltlc.grammar.english.event_windows import EventWindows
 from tltlc.grammar.english.events import Crossing
 from tltlc.grammar.english.exceptions import Exceptions
-from tltlc.grammar.english.excused import Excused
 from tltlc.grammar.english.extremes import Extremes
 from tltlc.grammar.english.forms import Form, Part, forms
 from tltlc.grammar.english.later_times import LaterTimes
@@ -56,8 +54,6 @@ _MOST: Final = 64
 
 
 class Meanings(
-    Excused,
-    EventWindows,
     Exceptions,
     Toggles,
     Alternatives,

@@ -83,10 +83,6 @@ class Stretches(Intervals, Orders):
         is_negative_last = is_negative(states[-1])
         return Reading((text,), "if it is for all of them" if is_negative_last else "")
 
-    def reach_count_before(self, counted: Counted, end: State) -> Reading | list[Reading] | None:
-        state = as_state(counted)
-        return None if state is None else self.reach_before(state, end)
-
     def count_and_only_when(self, counted: Counted, event: Event) -> Reading | None:
         """Return the rules of `a at most once and only when b`."""
         condition, sign = as_state(event), counted.sign or "<="
