@@ -18,6 +18,7 @@ MOST_STEPS: Final = 8
 _LONGEST_WINDOW: Final = 80
 """The most steps of a window after an event: a monitor of a longer one takes too long to build."""
 
+_EXACT: Final = 1e-12
 _MOST_PREVIOUS: Final = 3
 """The most times that `previously` is repeated."""
 
@@ -73,6 +74,8 @@ class Answers(Conditions):
                 f"the {duration.text} up to a step, or `times_since(p, q)` to count from an event on"
             )
             return []
+        if state.text in self.exclusive and (apart := self._one_within(state, duration)):
+            return apart
         if is_negative(state):
             never = State(f"not eventually within {duration.text} {state.negated().at(ATOM)}")
             return [
@@ -80,6 +83,25 @@ class Answers(Conditions):
                 Asked(Answer("within", state, duration.text), "if one step is enough"),
             ]
         return Asked(Answer("within", state, duration.text))
+
+    def _one_within(self, state: State, duration: Duration) -> list[Asked] | None:
+        """Return the readings of `exactly one of a and b within 3 s`: one of them in all that time, or at one step."""
+        parts = self.parts_of_exclusive.get(state.text, ())
+        steps = round(self.steps(duration), 6)
+        if len(parts) != 2 or not steps.is_integer() or steps < 1 or not (duration.is_steps or self._step_s):
+            return None
+        time = round((steps + 1) * self._step_s, 6)
+        is_exact = abs(time - (steps + 1) * self._step_s) < _EXACT
+        longer = f"{time:g} s" if is_exact and not duration.is_steps else f"{steps + 1:g} steps"
+        never = [f"(always for {longer} {part.negated().at(ATOM)})" for part in parts]
+        either = joined([*parts], "or")
+        apart = State(f"(eventually within {duration.text} {either.at(ATOM)}) and ({' or '.join(never)})", AND)
+        one, other = (f"`{part.text}`" for part in parts)
+        at_once = State(f"eventually within {duration.text} {state.at(ATOM)}")
+        return [
+            Asked(Answer("now", apart), f"if {one} or {other} must come, and not both in that time", is_formula=True),
+            Asked(Answer("now", at_once), "if a step with exactly one of them is enough", is_formula=True),
+        ]
 
     def eventually_within(self, duration: Duration, state: State) -> Asked | list[Asked]:
         return self.within(state, duration)
@@ -111,6 +133,9 @@ class Answers(Conditions):
             return None
         is_known = last.is_steps or bool(self._step_s)
         if not is_known or not steps.is_integer() or not 0 <= steps <= _MOST_PREVIOUS:
+            counted = self._counted_between(state, last, first)
+            if counted is not None:
+                return counted
             self.limits.append(
                 f"no short clause says that `{state.text}` was at least {last.text} ago and at most {first.text}: "
                 f"`once within {first.text} {state.at(ATOM)}` is about the {first.text} up to this step, and "
@@ -118,6 +143,18 @@ class Answers(Conditions):
             )
             return None
         return Asked(Answer("now", State(f"{'previously ' * int(steps)}once within {length.text} {state.at(ATOM)}")))
+
+    def _counted_between(self, state: State, last: Duration, first: Duration) -> Asked | None:
+        """Return whether an event has begun at least 5 s and at most 20 s ago; None if a step has no fixed length."""
+        event, steps = State(state.text.removeprefix("begins ")), round(self.steps(last), 6)
+        if not self._step_s or not steps.is_integer() or steps < 1 or event.level > ATOM or "previous" in event.text:
+            return None
+        time = round((steps - 1) * self._step_s, 6)
+        is_exact = abs(time - (steps - 1) * self._step_s) < _EXACT
+        nearer = f"{time:g} s" if is_exact and not last.is_steps else f"{steps - 1:g} steps"
+        counts = [f"times_within({event.text}, {time}, 10)" for time in (first.text, nearer)]
+        what = f"if `{event.text}` begins in that time, and fewer than 10 times in {first.text}"
+        return Asked(Answer("now", State(" > ".join(counts))), what)
 
     def window_ahead(self, window: tuple[Duration, Duration], state: State) -> Asked | list[Asked] | None:
         return self.window_after(state, window)

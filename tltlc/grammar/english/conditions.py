@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Final
 
 from tltlc.core.record import record
 from tltlc.grammar.english.changed_arguments import change_of_enum
@@ -11,6 +12,9 @@ from tltlc.grammar.english.quantities import Duration, Number, Quantities, compa
 from tltlc.grammar.english.terminals import Term
 from tltlc.grammar.mistakes.declared_names import DeclaredNames
 from tltlc.grammar.mistakes.sentences.states import ATOM, OR, RULE, State, joined
+
+_NOTHING: Final = ("none", "nothing", "empty", "idle", "off", "no", "unknown")
+"""Values of enums that stand for the absence of a value."""
 
 
 @record
@@ -132,6 +136,15 @@ class Conditions(Quantities):
         self.settled[edge.text] = state if operator == "begins" else state.negated()
         return edge
 
+    def last_enum(self, name: Term, value: Term) -> State | None:
+        """Return the condition of `the last note is left`, where an enum has a value for nothing between its values."""
+        values = () if name.declared is None else name.declared.values
+        others = [other for other in values if other not in (value.text, *_NOTHING)]
+        if len(others) > 3 or len(others) > len(values) - 2 or value.text not in values:
+            return None
+        free = joined([State(f"{name.text} is not {other}") for other in others], "and")
+        return State(f"({free.at(ATOM) if others[1:] else f'({free.text})'} since {_is(name, value).text})")
+
     def enum_left(self, name: Term, before: Term, value: Term) -> State | None:
         """Return the end of a value: `mode was alert and is not alert any more`."""
         return self.enum_ends(name, value) if before.text == value.text else None
@@ -220,6 +233,7 @@ class Conditions(Quantities):
         ]
         state = State(" or ".join(f"({case.text})" for case in cases), OR)
         self.exclusive.add(state.text)
+        self.parts_of_exclusive[state.text] = states
         return state
 
     def at_most_one(self, members: Members) -> State | None:
@@ -249,6 +263,9 @@ class Conditions(Quantities):
 
     def rises_above(self, number: Number, limit: Number) -> Crossing | None:
         return _crossing(comparison(number, ">", limit))
+
+    def comes_to(self, number: Number, limit: Number) -> Crossing | None:
+        return _crossing(comparison(number, ">=", limit))
 
     def held(self, state: State, *rest: str | Duration) -> Held | None:
         sign = rest[0] if isinstance(rest[0], str) else ""

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import re
 from typing import Final
 
 from tltlc.grammar.english.changed_arguments import has_changed_argument
 from tltlc.grammar.mistakes.sentences.vocabulary import CHANGING, LASTING
 from tltlc.grammar.mistakes.sentences.words import Words, phrases
 
+_COUNTED: Final = re.compile(r"times(?:_since|_within)?\([^()]*(?:\([^()]*\)[^()]*)*\) (?:>=|>|==) \d+")
+"""A count that has come to a number."""
 _AT_LEAST: Final = phrases("at least", "no less than", "more than")
 
 _NUMBERS: Final = ("int", "number", "ratio", "speed", "length", "time")
@@ -25,7 +28,7 @@ def takes_one_reading(clause: str, words: Words) -> bool:
         return True  # the first step may be compared with the one before
     if denies_its_own_event(event, answer) or _counts_from_start(answer):
         return True
-    return lasts_on(event) and answer.startswith("eventually within ")
+    return lasts_on(event) and answer.startswith(("eventually within ", "always for "))
 
 
 def is_english_alone(words: Words) -> bool:
@@ -56,6 +59,9 @@ def _counts_from_start(answer: str) -> bool:
 
 
 def lasts_on(event: str) -> bool:
-    """Whether an event is that a condition has held for a time, which each further step with it meets again."""
+    """Whether an event is met again at each further step: a condition that has held for a time, or a count."""
     is_held = "time_holding(" in event and " >" in event and " or " not in event
-    return (is_held or event.startswith("historically for ")) and not event.startswith(("begins ", "ends "))
+    is_counted = _COUNTED.fullmatch(event) is not None
+    return (is_held or is_counted or event.startswith("historically for ")) and not event.startswith(
+        ("begins ", "ends ")
+    )

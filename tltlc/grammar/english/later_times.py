@@ -139,6 +139,9 @@ class LaterTimes(Rules):
         """Return the answer of `speed < 1 within 5 s and then stays stopped until a`."""
         return self.within_and_until(state, duration, end) if any(sign in state.text for sign in _STOPPED) else None
 
+    def window_before_from_to(self, state: State, last: Duration, first: Duration) -> Asked | None:
+        return self.window_before(state, (last, first))
+
     # So long ago.
 
     def only_when_ago(self, state: State, event: State, sign: str, duration: Duration) -> _Found:

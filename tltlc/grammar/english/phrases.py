@@ -180,6 +180,7 @@ PHRASES: Final[Mapping[str, str]] = {
     "across whole run|across whole game|per game|per run|per episode",
     "falls_below": "falls below|drops below|goes below|drops under|falls under",
     "rises_above": "rises above|goes above|goes over",
+    "comes_to": "reaches|hits|gets to|comes to|arrives at|climbs to|gets up to",
     "is_never": "is never|never",
     "when_it": "at start of|at beginning of|at|when|on|from|as of|at time of|at moment of|at step of|"
     "as when|than when|than at|than at start of|as at|as at start of",

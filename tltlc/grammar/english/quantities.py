@@ -71,6 +71,8 @@ class Quantities:
         """Maps the texts of changes to what holds after them: `begins a` to a."""
         self.exclusive: set[str] = set()
         """The conditions that exactly one of several holds: as a goal, they may be about the whole episode."""
+        self.parts_of_exclusive: dict[str, tuple[State, ...]] = {}
+        """Maps the texts of conditions such as `exactly one of a and b` to these."""
         self.assigned: set[str] = set()
         """The conditions that are written with `is true` or `is false`."""
         self.is_lasting = False

@@ -333,20 +333,17 @@ def _answer_readings(when: When, event: Event, state: State, asked: Asked) -> li
         return []
     is_each = when in LASTING or (when == "each" and answer.kind == "now")
     if clauses := answered(state, answer, is_from_then=when == "after", is_each=is_each):
-        if answer.kind == "within" and lasts_on(state.text):
-            return _once_or_anew(state, answer, asked.condition)
+        if answer.kind in ("within", "lasting") and lasts_on(state.text):
+            return _once_or_anew(state, clauses[0].partition(" implies ")[2], asked.condition)
         return [Reading(clauses, asked.condition)]
     if asked.condition:
         return []
     return _two_readings(state, answer)
 
 
-def _once_or_anew(event: State, answer: Answer, condition: str) -> list[Reading]:
+def _once_or_anew(event: State, asked: str, condition: str) -> list[Reading]:
     """Return the readings of `when a for 3 s, b within 2 s`: once for each time, or anew at each step."""
-    asked, also = (
-        f"eventually within {answer.time} {answer.state.at(ATOM)}",
-        f"{condition}, and " if condition else "if ",
-    )
+    also = f"{condition}, and " if condition else "if "
     return [
         Reading((f"keep begins ({event.text}) implies {asked}",), f"{also}once each time that this begins"),
         Reading((f"keep {event.at(OR)} implies {asked}",), f"{also}anew at each step while it lasts"),

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Final
+
 from tltlc.grammar.english.differences import Difference, Differences
 from tltlc.grammar.english.events import Counted, Event, as_state
 from tltlc.grammar.english.intervals import Every
@@ -9,6 +11,9 @@ from tltlc.grammar.english.quantities import Duration, begun
 from tltlc.grammar.english.rules import Reading, When
 from tltlc.grammar.english.terminals import Term
 from tltlc.grammar.mistakes.sentences.states import ATOM, OR, State, joined
+
+_MOST_STEPS_BACK: Final = 10
+"""The most steps back for which a help writes `previous` in each other."""
 
 
 class Windows(Differences):
@@ -61,11 +66,15 @@ class Windows(Differences):
         return self.when_count_within("after", event, counted, window)
 
     def change_in_window(self, difference: Difference, window: Duration) -> None:
-        if self.steps(window) != 1:
-            self._let_game_record(
-                f"says by how much `{difference.term.text}` changes in {window.text}",
-                f"{_name(difference.term.text)}_change in [0, 100]",
-            )
+        """Say that no clause has `health falls by at most 5 in 3 s`; a few steps have the value before them."""
+        steps, name = round(self.steps(window), 6), difference.term.text
+        if steps == 1:
+            return
+        before = "previous(" * int(steps) + name + ")" * int(steps) if steps in range(2, _MOST_STEPS_BACK + 1) else ""
+        what = f" (`{before}` is the value {window.text} before)" if before else ""
+        self._let_game_record(
+            f"says by how much `{name}` changes in {window.text}{what}", f"{_name(name)}_change in [0, 100]"
+        )
 
     def mean_of(self, term: Term, *windows: Duration) -> None:
         self._let_game_record(f"takes the mean of `{term.text}`", f"{_name(term.text)}_mean in [0, 100]")

@@ -11,6 +11,7 @@ from typing import Final
 
 from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.grammar.keywords import UNITS_ELSEWHERE
+from tltlc.grammar.lexer import END
 from tltlc.grammar.mistakes.declared_names import declared_names
 from tltlc.grammar.mistakes.equalities import VERBS, equality, value_end
 from tltlc.grammar.mistakes.fragments import is_first_on_line
@@ -163,6 +164,11 @@ def foreign_unit(failure: ParseFailure) -> Diagnostic | None:
     ):
         return None
     listed = ", ".join(f"`{name}`" for name in sorted(load().units))
+    if failure.tokens[failure.stop.index - 2].type in COMPARISONS:
+        help_ = f"write `{number.text}` alone: only times, lengths, speeds, angles and ratios have a unit"
+        is_whole = failure.tokens[failure.stop.index + 1].type in (END, "RPAR", *INFIX)
+        span = span_of([number, token]) if is_whole else None
+        return failure.error("TLT0111", title, help_, span=span, write=number.text if is_whole else None)
     help_ = f"the units are {listed}; to compare a signal, write `{token.text} >= {number.text}`"
     return failure.error("TLT0111", title, help_)
 

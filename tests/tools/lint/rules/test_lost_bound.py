@@ -62,14 +62,15 @@ def test_a_bound_with_an_effect_is_not_reported(clause: str) -> None:
 
 def test_the_advice_names_the_right_form() -> None:
     assert helps("require eventually within 2 s (a then b)") == [
-        "leave it out; for a time from `a` on, write `reach a then within 2 s b`; "
+        "without a time, leave the bound out; for a time from `a` on, write `reach a then within 2 s b`; "
         "for a time from the first step of play, write `(a and time_holding(true) <= 2 s)` for `a`"
     ]
     assert helps("require eventually within 2 s (a then b then a)") == [
-        "leave it out; for a time from the first step of play, write `(a and time_holding(true) <= 2 s)` for `a`"
+        "without a time, leave the bound out; for a time from the first step of play, "
+        "write `(a and time_holding(true) <= 2 s)` for `a`"
     ]
     assert helps("require F[0,7] (a then b)") == [
-        "leave it out; for a time from `a` on, write `reach a then within 7 steps b`"
+        "without a time, leave the bound out; for a time from `a` on, write `reach a then within 7 steps b`"
     ]
     assert helps("reach eventually within 2 s a") == ["write `require eventually within 2 s a`"]
     assert helps("reach a then (eventually within 2 s b)") == ["write `a then within 2 s b`"]
@@ -96,11 +97,11 @@ def test_the_advice_for_a_sequence_is_a_deadline_of_its_first_goal() -> None:
 
 def test_a_sequence_after_an_event_may_have_a_time_from_that_event() -> None:
     assert helps("keep begins a implies eventually within 2 s (b then a then b)") == [
-        "leave it out; for a time from `begins a` on, write "
-        "`eventually (b then a then (b and time_since(begins a) <= 2 s))`"
+        "for all of it within 2 s of `begins a`, write `eventually within 2 s (b and previously (not begins a since "
+        "(a and previously (not begins a since b))))`; without a time, leave the bound out"
     ]
     assert helps("keep a implies (eventually within 2 s (b then a))") == [
-        "leave it out; for a time from `b` on, write `eventually (b then within 2 s a)`"
+        "without a time, leave the bound out; for a time from `b` on, write `eventually (b then within 2 s a)`"
     ]
 
 

@@ -23,6 +23,9 @@ _UNITS: Final = {
 UNIT_OF_TYPE: Final = {"length": " m", "time": " s", "speed": " m/s", "angle": " rad", "ratio": ""}
 _WORD_UNITS: Final = {"meters": "m", "metres": "m", "seconds": "s", "sec": "s", "degrees": "deg", "percent": "%"}
 
+_TYPE_WORDS: Final = frozenset("int integer uint float double number real bool ratio time length speed angle".split())
+"""Words behind a range that are no units."""
+
 Range = tuple[str, str, str]
 """The two ends of a range as they should be written, and the type of values with their unit, or empty."""
 
@@ -46,12 +49,15 @@ def _two_ends(cursor: Cursor) -> Range | None:
     opening = cursor.token.text if cursor.token.text in _OPENING else ""
     cursor.at += bool(opening)
     low = _end(cursor)
+    _skip_foreign_unit(cursor, is_inside=bool(opening))
     if low is None or not _separator(cursor):
         return None
     high = _end(cursor)
+    _skip_foreign_unit(cursor, is_inside=bool(opening))
     if high is None or (opening and not cursor.accept(*_OPENING[opening])):
         return None
     unit = low[1] or high[1] or (_unit(cursor) if opening else "")
+    _skip_foreign_unit(cursor, is_inside=bool(opening))
     ends = tuple(f"{number} {unit}" if unit and number not in ("inf", "-inf") else number for number, _ in (low, high))
     if {low[1], high[1]} - {"", unit}:
         ends = tuple(f"{number} {own}".strip() for number, own in (low, high))
@@ -133,6 +139,13 @@ def _unit(cursor: Cursor) -> str:
             cursor.at += length
             return text
     return ""
+
+
+def _skip_foreign_unit(cursor: Cursor, *, is_inside: bool) -> None:
+    """Skip a unit that the language does not know, as in ``[0 kg, 5 kg]`` and ``[0, 5] coins``."""
+    token = cursor.token
+    if is_inside and token.type == "NAME" and token.text not in (*_SIGNS, *_TYPE_WORDS):
+        cursor.at += 1
 
 
 def read_unit_as_type(cursor: Cursor) -> tuple[str, str]:

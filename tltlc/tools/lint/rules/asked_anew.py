@@ -52,7 +52,7 @@ def _may_wait(asked: AskedResult) -> bool:
 def _lasts(asked: AskedResult, view: FileView) -> bool:
     """Whether the condition is that a count or a time has come to a number."""
     condition = asked.condition.tree
-    if not isinstance(condition, BinaryExpr) or condition.op not in (">", ">="):
+    if not isinstance(condition, BinaryExpr) or condition.op not in (">", ">=", "=="):
         return False
     counted = without_brackets(condition.left)
     return isinstance(counted, CallExpr) and counted.name in _LASTING and counted.name not in view.env.scope.names

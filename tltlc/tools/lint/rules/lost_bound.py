@@ -89,16 +89,18 @@ def _before_sequence(part: ScopedExpression, event: str | None) -> Iterator[Rule
         return
     bound = _bound_text(outer)
     first, time = operand_text(outer.with_tree(inner.left)), bound.removeprefix("within ")
-    advice, second = ["leave it out"], without_brackets(inner.right)
+    advice, second = ["without a time, leave the bound out"], without_brackets(inner.right)
     if inner.bound is None and not (isinstance(second, BinaryExpr) and second.op == "then"):
         sequence = f"{first} then {bound} {operand_text(outer.with_tree(second))}"
         sequence = f"reach {sequence}" if event is None else f"eventually ({sequence})"
         advice.append(f"for a time from `{first}` on, write `{sequence}`")
     if not time.endswith(("step", "steps")):
         if event:
-            *goals, last = (operand_text(outer.with_tree(goal)) for goal in operands(inner, "then"))
-            timed = f"({last} and time_since({event}) <= {time})"
-            advice.append(f"for a time from `{event}` on, write `eventually ({' then '.join((*goals, timed))})`")
+            goals = [operand_text(outer.with_tree(goal)) for goal in operands(inner, "then")]
+            whole = goals[0]
+            for goal in goals[1:]:
+                whole = f"({goal} and previously (not {event} since {whole}))"
+            advice.insert(0, f"for all of it within {time} of `{event}`, write `eventually {bound} {whole}`")
         elif event is None:
             timed = f"({first} and time_holding(true) <= {time})"
             advice.append(f"for a time from the first step of play, write `{timed}` for `{first}`")

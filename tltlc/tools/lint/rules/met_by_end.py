@@ -111,8 +111,9 @@ def _finding(until: ScopedExpression, waits: str, form: str, end_alone: str = ""
     word = until.source.slice(until.tree.op_span)
     message = f"{waits} may wait for a step with `{end.text}`, with or without `{first.text}`"
     allow = f"write `{end_alone}`" if end_alone else "allow it with the comment `// tltlc: allow TLT0456`"
+    weak = f", and `weak_until` if play may end before `{end.text}`" if word == "until" else ""
     help_ = (
-        f"if `{first.text}` must come first, write `{form.format(f'{operand_text(first)} and ({until.text})')}`; "
+        f"if `{first.text}` must come first, write `{form.format(f'{operand_text(first)} and ({until.text})')}`{weak}; "
         f"if `{end.text}` alone is enough, {allow}"
     )
     label = Label(until.source, until.tree.span, message)

@@ -28,7 +28,7 @@ def check(view: FileView) -> Iterator[RuleFinding]:
     Also yield one for `until`, `weak_until` and `since` beside `and` and `or`, as in `a until b or c`.
     The words are `eventually` and `always` before `and`, `or`, `until`, `weak_until` and `since`; `once` and
     `historically` before the last three, and with a bound before `or`; `previously` before `or`. The letters F and G
-    are left out, and so are operands in brackets. They show how far the word applies.
+    are left out, and so are operands in brackets, which show how far the word applies; but not `(a and b)` before `or`.
     """
     for declaration in view.module.declarations:
         if isinstance(declaration, (LetDecl, SpecDecl)):
@@ -63,7 +63,10 @@ def _is_narrow(operand: Unary, op: str, source: SourceFile) -> bool:
     """Whether an operand of an infix operator begins with a word that seems to apply to the whole."""
     word = source.slice(operand.op_span)
     if isinstance(operand.operand, GroupExpr):
-        return False
+        inside = without_brackets(operand.operand)
+        # The brackets of `eventually (a and b) or (c and d)` may be there because of `and` alone.
+        if op != "or" or not isinstance(inside, BinaryExpr) or inside.op != "and":
+            return False
     if word in _FUTURE_WORDS:
         return True
     if word == "previously":
