@@ -285,8 +285,9 @@ def test_counting_stops_at_a_maximum() -> None:
 
 def test_both_sides_of_a_comparison_get_a_maximum() -> None:
     assert error_of("keep time_holding(hidden) >= time_holding(seen)").help == (
-        "write the greatest value that matters on both sides, e.g. "
-        "`time_holding(hidden, 60 s) >= time_holding(seen, 60 s)`: a difference above it is not noticed"
+        "write the greatest value that one play can reach on both sides, e.g. "
+        "`time_holding(hidden, 60 s) >= time_holding(seen, 60 s)`: from there on, both stay at it, and no "
+        "difference is seen"
     )
 
 

@@ -86,7 +86,10 @@ def check_closed_pair(left: Quantity, right: Quantity, expr: BinaryExpr, env: En
     if env.symbolic or not (is_open(left) and is_open(right)):
         return
     text = f"{_closed_text(left)} {expr.op} {_closed_text(right)}"
-    advice = f"write the greatest value that matters on both sides, e.g. `{text}`: a difference above it is not noticed"
+    advice = (
+        f"write the greatest value that one play can reach on both sides, e.g. `{text}`: from there on, both stay at "
+        "it, and no difference is seen"
+    )
     raise _open_error(left, expr.left, env, advice)
 
 

@@ -18,6 +18,8 @@ MOST_STEPS: Final = 8
 _LONGEST_WINDOW: Final = 80
 """The most steps of a window after an event: a monitor of a longer one takes too long to build."""
 
+_MOST_STEPS_APART: Final = 20
+"""The most steps in which one of two events must come, and not both: a monitor has their square as states."""
 _EXACT: Final = 1e-12
 _MOST_PREVIOUS: Final = 3
 """The most times that `previously` is repeated."""
@@ -88,7 +90,9 @@ class Answers(Conditions):
         """Return the readings of `exactly one of a and b within 3 s`: one of them in all that time, or at one step."""
         parts = self.parts_of_exclusive.get(state.text, ())
         steps = round(self.steps(duration), 6)
-        if len(parts) != 2 or not steps.is_integer() or steps < 1 or not (duration.is_steps or self._step_s):
+        if len(parts) != 2 or not steps.is_integer() or not 1 <= steps <= _MOST_STEPS_APART:
+            return None
+        if not duration.is_steps and not self._step_s:
             return None
         time = round((steps + 1) * self._step_s, 6)
         is_exact = abs(time - (steps + 1) * self._step_s) < _EXACT
@@ -125,6 +129,9 @@ class Answers(Conditions):
 
     def held_before(self, state: State, duration: Duration) -> Asked:
         return Asked(Answer("now", State(f"time_holding({state.text}) >= {duration.text}")))
+
+    def held_before_first(self, duration: Duration, state: State) -> Asked:
+        return self.held_before(state, duration)
 
     def window_before(self, state: State, window: tuple[Duration, Duration]) -> Asked | None:
         last, first = window

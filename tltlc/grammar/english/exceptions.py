@@ -247,6 +247,15 @@ class Exceptions(Rules):
         others = _without(state, during[0])
         return Reading((f"avoid {joined([*others, over], 'and').text}",))
 
+    def implies_except_first(self, event: Event, state: State, duration: Duration) -> _Found:
+        """Return the rule of `keep a implies b except in the first 1 s`, which is that of a."""
+        condition = as_state(event)
+        over = None if condition is None or not are_simple(condition) else self._held_so_long(condition, ">=", duration)
+        return None if over is None else Reading((f"keep {over.text} implies {state.at(OR)}",))
+
+    def when_except_first(self, when: When, event: Event, state: State, duration: Duration) -> _Found:
+        return None if when in ("each", "after") else self.implies_except_first(event, state, duration)
+
     def avoid_first_of(self, state: State, duration: Duration, during: State) -> Reading | None:
         """Return the rule of `no a in the first 1 s of b`."""
         early = self._held_so_long(during, "<", duration)

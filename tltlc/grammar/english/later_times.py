@@ -58,7 +58,7 @@ class LaterTimes(Rules):
 
     def opposite_in_window(self, event: Event, state: State, window: Window, exception: Event | None = None) -> _Found:
         """Return the rule of `begins a implies not a between 1 s and 2 s later`: how long a lasts."""
-        begun, lasting = as_state(event), state.negated()
+        begun, lasting = as_state(event), self.settled.get(state.text, state).negated()
         ends = None if exception is None else as_state(exception)
         if begun is None or _plain(begun.text) != _plain(begun_text(lasting)) or not are_simple(lasting):
             return None

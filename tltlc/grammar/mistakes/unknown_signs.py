@@ -18,6 +18,10 @@ _QUOTES: Final = frozenset("\"'`´‘’‚“”„«»")
 _SIGNS: Final = {"−": "-", "×": "*", "÷": "/", "≔": "=", "°": "deg"}
 """Maps foreign characters to their equivalents in the language. Unicode normalization finds more of them."""
 _SUPERSCRIPTS: Final = "⁰¹²³⁴⁵⁶⁷⁸⁹"
+_NO_REMAINDER: Final = (
+    "there is no remainder: name the numbers, as in `times(a) == 3 or times(a) == 6`, or let the game record it as a "
+    "signal"
+)
 _HELPS: Final = {
     "#": "comments begin with `//`",
     "%": "write a number before `%`, as in `50%`",
@@ -57,6 +61,8 @@ def unknown_sign(failure: ParseFailure) -> Diagnostic | None:
         help_ = "write `,`" if is_separator else leave_out_help(failure)
         return failure.error("TLT0104", "`;` means nothing here", help_, write="," if is_separator else None)
     title = f"{_quote_sign(text)} means nothing here"
+    if text == "%" and failure.tokens[failure.stop.index + 1].type == "NUMBER":
+        return failure.error("TLT0104", title, _NO_REMAINDER)
     if text == "~":
         return failure.error("TLT0104", title, "for `not` write `not` or `!`", write="not")
     equivalent = _equivalent_of(text)

@@ -112,6 +112,8 @@ def _with_reading(
         (is_whole and not _is_foreign(known.fixes[0], failure)) or _has_readings(failure, known.help or "")
     ):
         return known
+    if words.word(0) == "require" and words.word(1) in ("at", "the", "in", "for"):
+        words = words[1:]
     if not words or words.word(0) == "require":
         return known
     read = sentence(words)

@@ -17,6 +17,7 @@ _CHAINS: Final = ("and", "or")
 _ORDERED: Final = ("U", "W", "since")
 _INFIX_WORDS: Final = ("until", "weak_until", "since")
 _FUTURE_WORDS: Final = ("eventually", "always")
+_NEXT_WORDS: Final = ("next", "weak_next")
 _PAST_WORDS: Final = ("once", "historically")
 _FUTURE: Final = ("F", "G", "X", "N", "U", "W", "R", "M", "then", "within")
 _TEMPORAL: Final = (*_FUTURE, "since", "previously", *_PAST_WORDS)
@@ -26,7 +27,7 @@ def check(view: FileView) -> Iterator[RuleFinding]:
     """Yield a finding for each word that ends before an infix operator, although the operand after it has no such word.
 
     Also yield one for `until`, `weak_until` and `since` beside `and` and `or`, as in `a until b or c`.
-    The words are `eventually` and `always` before `and`, `or`, `until`, `weak_until` and `since`; `once` and
+    The words are `eventually` and `always` before `and`, `or`, `until`, `weak_until` and `since`; `next`, `once` and
     `historically` before the last three, and with a bound before `or`; `previously` before `or`. The letters F and G
     are left out, and so are operands in brackets, which show how far the word applies; but not `(a and b)` before `or`.
     """
@@ -67,7 +68,7 @@ def _is_narrow(operand: Unary, op: str, source: SourceFile) -> bool:
         # The brackets of `eventually (a and b) or (c and d)` may be there because of `and` alone.
         if op != "or" or not isinstance(inside, BinaryExpr) or inside.op != "and":
             return False
-    if word in _FUTURE_WORDS:
+    if word in _FUTURE_WORDS or (word in _NEXT_WORDS and op in _ORDERED):
         return True
     if word == "previously":
         return op == "or"
