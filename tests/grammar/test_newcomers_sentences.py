@@ -8,6 +8,7 @@ import tltlc
 from tests.grammar.phrases_as_typed import errors
 from tests.grammar.test_english_sentences import HEAD
 from tltlc.core.source import SourceFile
+from tltlc.monitor import Monitor
 
 ONE = {
     "once fire begins it stays on for at least 10 s": ["keep begins fire implies always for 10 s fire"],
@@ -30,8 +31,40 @@ ONE = {
         "keep begins fire implies eventually within 20 s (spray or ends fire)"
     ],
     "keep fire implies spray unless once boss_dead": ["keep fire implies spray or once boss_dead"],
+    "when coins reaches 20 then fire within 2 s": ["keep begins (coins >= 20) implies eventually within 2 s fire"],
+    "when times_since(fire, ends spray) reaches 3 then boss_dead for 6 s": [
+        "keep begins (times_since(fire, ends spray) >= 3) implies always for 6 s boss_dead"
+    ],
+    "keep spray implies always in the last 10 s health <= 5": ["keep spray implies time_holding(health <= 5) >= 10 s"],
+    "require at the end fire and health >= 30": ["require eventually always (fire and health >= 30)"],
+    "keep fire implies health <= 5 except in the first 1 s": ["keep time_holding(fire) >= 1 s implies health <= 5"],
 }
 SEVERAL = {
+    "from fire until spray or boss_dead health does not change": [
+        "keep begins fire implies ((health >= previous(health) and health <= previous(health)) weak_until "
+        "(spray or boss_dead))",
+        "keep begins fire implies spray or boss_dead or weak_next ((health >= previous(health) and health <= "
+        "previous(health)) weak_until (spray or boss_dead))",
+    ],
+    "when times_since(fire, ends spray) >= 3 then boss_dead for 6 s": [
+        "keep begins (times_since(fire, ends spray) >= 3) implies always for 6 s boss_dead",
+        "keep times_since(fire, ends spray) >= 3 implies always for 6 s boss_dead",
+    ],
+    "keep fire implies exactly one of spray, boss_dead within 1 s": [
+        "keep fire implies (eventually within 1 s (spray or boss_dead)) and ((always for 1.1 s not spray) or "
+        "(always for 1.1 s not boss_dead))",
+        "keep fire implies eventually within 1 s ((spray and not boss_dead) or (not spray and boss_dead))",
+    ],
+    "keep begins fire implies spray at least 5 s and at most 20 s before": [
+        "keep begins fire implies times_within(spray, 20 s, 10) > times_within(spray, 4.9 s, 10)"
+    ],
+    "keep begins fire implies once between 2 s and 5 s ago begins spray": [
+        "keep begins fire implies times_within(spray, 5 s, 10) > times_within(spray, 1.9 s, 10)"
+    ],
+    "keep fire implies spray happened since the last fire": [
+        "keep fire implies previously (not fire since (spray and not fire))",
+        "keep fire implies spray or previously (not fire since (spray and not fire))",
+    ],
     "keep begins fire implies eventually within 4 s (phase is menu or phase is shift) unless once spray": [
         "keep begins fire implies once spray or (eventually within 4 s (phase is menu or phase is shift))",
         "keep begins fire implies eventually within 4 s ((phase is menu or phase is shift) or once spray)",
@@ -68,3 +101,35 @@ def test_a_sentence_with_several_meanings_gets_all_of_them(typed: str) -> None:
     for clause in SEVERAL[typed]:
         assert f"`{clause}`" in text
         tltlc.compile_text(f"{HEAD}spec s {{\n{clause}\n}}\n")
+
+
+@pytest.mark.parametrize(("ago", "kept"), [(1, False), (2, True), (5, True), (6, False)])
+def test_a_window_before_an_event_has_its_first_and_its_last_step(ago: int, kept: bool) -> None:
+    (text,) = SEVERAL["keep begins fire implies once between 2 s and 5 s ago begins spray"]
+    (fspa,) = tltlc.compile_text(f"{HEAD.replace('10 Hz', '1 Hz')}spec s {{ {text.replace('1.9 s', '1 s')} }}")
+    monitor = Monitor(fspa)
+    rest = {"boss_dead": 0, "coins": 0, "lap": 0, "health": 1, "phase": 0, "state": 0}
+    for step in range(ago + 1):
+        result = monitor.step({"fire": step == ago, "spray": step == 0, **rest})
+    assert (result.verdict != "violated") is kept
+
+
+def test_the_last_value_of_an_enum_may_have_been_followed_by_nothing() -> None:
+    head = "clock 10 Hz\nsignal fire: bool\nsignal note: (none, left, right)\n"
+    source = SourceFile("a.tltl", f"{head}spec s {{\nkeep begins fire implies last note is left\n}}\n")
+    assert errors(source)[0].help == "write `keep begins fire implies ((note is not right) since note is left)`"
+
+
+def test_a_number_of_the_game_has_no_unit() -> None:
+    (error,) = errors(SourceFile("a.tltl", f"{HEAD}spec s {{\navoid fire and health > 80 hp\n}}\n"))
+    assert (error.code, error.fixes[0].edits[0].text) == ("TLT0111", "80")
+    text = "signal load in [0, 5] kg\nsignal mass in [0 kg, 5 kg]\nspec s { reach load > 1 and mass > 1 }\n"
+    assert [error.help for error in errors(SourceFile("a.tltl", text))] == [
+        "write `signal load in [0, 5]`",
+        "write `signal mass in [0, 5]`",
+    ]
+
+
+def test_a_remainder_is_said_to_be_missing() -> None:
+    (error,) = errors(SourceFile("a.tltl", f"{HEAD}spec s {{\nkeep times(fire) % 3 == 0 implies spray\n}}\n"))
+    assert (error.help or "").startswith("there is no remainder")

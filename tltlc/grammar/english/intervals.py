@@ -296,7 +296,7 @@ class Intervals(Rules):
 
 def _between(state: State, span: Span) -> Reading | None:
     start, end = span.start, span.end
-    if max(start.level, end.level) > ATOM:
+    if start.level > ATOM or end.level > OR:
         return None
     if start.text == end.text:  # from one to the next
         inside = f"not {start.at(ATOM)} and previously once {start.at(ATOM)}"

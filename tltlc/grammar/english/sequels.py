@@ -226,6 +226,8 @@ class Sequels(Stretches):
     def between_comes(self, span: Span, state: State) -> _Found:
         """Return the readings of `between two a there is b`: once, or at every step."""
         comes, holds = self.must_come_between(state, span), self.keep_between(state, span)
+        if isinstance(holds, Reading) and "previous(" in state.text and span.start.text != span.end.text:
+            return _steady(state, span, holds)
         if not isinstance(comes, Reading) or not isinstance(holds, Reading):
             return None
         return [
@@ -336,3 +338,13 @@ def _as_formula(asked: Asked) -> Asked:
         return asked
     formula = State(f"eventually within {answer.time} {answer.state.at(ATOM)}")
     return replace(asked, answer=Answer("now", formula), is_formula=True)
+
+
+def _steady(state: State, span: Span, holds: Reading) -> list[Reading]:
+    """Return the readings of `from a until b, x stays the same`: with the step of a, or only from there on."""
+    end, at_start = span.end, f"at the step with `{span.start.text}`"
+    later = f"{end.at(OR)} or weak_next ({state.at(ATOM)} weak_until {end.at(ATOM)})"
+    return [
+        replace(holds, condition=f"if it must not change {at_start}, either"),
+        Reading((f"keep {begun_text(span.start)} implies {later}",), f"if it may still change {at_start}"),
+    ]
