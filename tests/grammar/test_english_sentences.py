@@ -1064,7 +1064,6 @@ UNSAYABLE = {
     "health never falls by more than 5 in 30 s": "no clause can say what `health` was 30 s ago",
     "when fire, spray after at least 1 s and at most 90 s": "a clause that looks 90 s ahead has too many states",
     "fire between 50 s and 80 s after spray": "a clause that looks 80 s ahead has too many states",
-    "if spray then once between 50 s and 80 s fire": "no short clause says that `fire` was at least 50 s ago",
     "if spray then times(fire) <= 3 within 5 s": "`times(fire) <= 3` counts from the first step on",
     "at least 2 fire in any 5 s": "no short clause says that it is so often in each of them",
     "fire => coins@2s > coins": "no clause can say what `coins` is 2 s later or earlier",

@@ -36,10 +36,49 @@ ONE = {
         "keep begins (times_since(fire, ends spray) >= 3) implies always for 6 s boss_dead"
     ],
     "keep spray implies always in the last 10 s health <= 5": ["keep spray implies time_holding(health <= 5) >= 10 s"],
+    "keep fire implies health does not fall": ["keep fire implies health >= previous(health)"],
+    "when health falls below 20, fire within 1 s and for at least 4 s": [
+        "keep begins (health < 20) implies eventually within 1 s always for 4 s fire"
+    ],
+    "health may only increase while fire or ends fire": ["keep health > previous(health) implies fire or ends fire"],
+    "keep begins fire implies once spray and no boss_dead since spray": [
+        "keep begins fire implies (not boss_dead since spray)"
+    ],
+    "once fire has been true for 1 s, health stays between 3 and 5 until the end": [
+        "keep time_holding(fire) >= 1 s implies always (health >= 3 and health <= 5)"
+    ],
+    "keep fire implies health between 5 and 30, except in the first 0.5 s of fire": [
+        "keep time_holding(fire) >= 0.5 s implies health >= 5 and health <= 30"
+    ],
+    "fire at most 3 times and never for longer than 1 s": [
+        "keep times(fire) <= 3",
+        "avoid time_holding(fire) > 1 s",
+    ],
     "require at the end fire and health >= 30": ["require eventually always (fire and health >= 30)"],
     "keep fire implies health <= 5 except in the first 1 s": ["keep time_holding(fire) >= 1 s implies health <= 5"],
 }
 SEVERAL = {
+    "no second fire within 10 s": [
+        "avoid (begins fire) then within 10 s (begins fire)",
+        "avoid fire then within 10 s fire",
+        "keep ends fire implies always for 10 s not fire",
+    ],
+    "keep begins fire implies spray held for 4 s": [
+        "keep begins fire implies time_holding(spray) >= 4 s",
+        "keep begins fire implies always for 4 s spray",
+    ],
+    "reach fire within 15 min and health >= 4 and spray": [
+        "require eventually within 15 min (fire and health >= 4 and spray)",
+        "reach health >= 4 and spray",
+    ],
+    "while fire, spray and not boss_dead, except when health <= 5": [
+        "keep fire implies spray and not boss_dead or health <= 5",
+        "keep fire implies spray and (not boss_dead or health <= 5)",
+    ],
+    "keep health < previous(health) and previous(health) - health <= 1 unless fire": [
+        "keep (health < previous(health) and previous(health) - health <= 1) or fire",
+        "keep health < previous(health) and (previous(health) - health <= 1 or fire)",
+    ],
     "from fire until spray or boss_dead health does not change": [
         "keep begins fire implies ((health >= previous(health) and health <= previous(health)) weak_until "
         "(spray or boss_dead))",

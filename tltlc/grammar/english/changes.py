@@ -285,6 +285,11 @@ class Changes(Rules):
     def at_least_value(self, left: Number, limit: Number) -> State | None:
         return comparison(left, ">=", limit)
 
+    def not_changing(self, term: Term, change: Change) -> State | None:
+        """Return the condition of `x does not fall`."""
+        sign = {"falls": ">=", "rises": "<="}.get(change)
+        return None if sign is None else State(f"{term.text} {sign} previous({term.text})")
+
     def all_change(self, terms: tuple[Term, ...], change: Change) -> State | None:
         return _all([self.changes(term, change) for term in terms])
 

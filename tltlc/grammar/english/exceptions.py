@@ -247,14 +247,19 @@ class Exceptions(Rules):
         others = _without(state, during[0])
         return Reading((f"avoid {joined([*others, over], 'and').text}",))
 
-    def implies_except_first(self, event: Event, state: State, duration: Duration) -> _Found:
+    def implies_except_first(self, event: Event, state: State, duration: Duration, *of: State) -> _Found:
         """Return the rule of `keep a implies b except in the first 1 s`, which is that of a."""
         condition = as_state(event)
-        over = None if condition is None or not are_simple(condition) else self._held_so_long(condition, ">=", duration)
-        return None if over is None else Reading((f"keep {over.text} implies {state.at(OR)}",))
+        if condition is None or not are_simple(condition, *of):
+            return None
+        over = self._held_so_long((*of, condition)[0], ">=", duration)
+        others = _without(condition, of[0]) if of else []
+        return (
+            None if over is None else Reading((f"keep {joined([*others, over], 'and').at(OR)} implies {state.at(OR)}",))
+        )
 
-    def when_except_first(self, when: When, event: Event, state: State, duration: Duration) -> _Found:
-        return None if when in ("each", "after") else self.implies_except_first(event, state, duration)
+    def when_except_first(self, when: When, event: Event, state: State, duration: Duration, *of: State) -> _Found:
+        return None if when in ("each", "after") else self.implies_except_first(event, state, duration, *of)
 
     def avoid_first_of(self, state: State, duration: Duration, during: State) -> Reading | None:
         """Return the rule of `no a in the first 1 s of b`."""
@@ -315,14 +320,24 @@ def _excused(state: State, excuse: State, *, is_avoided: bool) -> _Found:
             return Reading((f"keep {state.at(OR)} or {excuse.at(ATOM)}",))
         if _is_range(state):
             return Reading((whole,))
-        first, _, last = state.text.rpartition(" and ")
-        apart = None if "(" in state.text else f"keep {first} and ({last} or {excuse.at(ATOM)})"
+        first, last = _last_part(state.text, " and ")
+        apart = f"keep {first} and ({last} or {excuse.at(ATOM)})" if first else None
     if apart is None or state.level > OR:
         return None
     return [
         Reading((whole,), f"if `{excuse.text}` is an exception of all before it"),
         Reading((apart,), f"if it is one of `{last}` alone"),
     ]
+
+
+def _last_part(text: str, word: str) -> tuple[str, str]:
+    """Return a text before and behind the last word that stands in no brackets; "" and the text if there is none."""
+    depth = 0
+    for at in range(len(text) - 1, -1, -1):
+        depth += (text[at] == ")") - (text[at] == "(")
+        if depth == 0 and text.startswith(word, at):
+            return text[:at], text[at + len(word) :]
+    return "", text
 
 
 def _is_range(state: State) -> bool:
@@ -360,7 +375,7 @@ def _excused_parts(parts: Sequence[State | Event]) -> list[tuple[State, str]]:
     """Return what an exception behind several conditions leaves of them, with what tells the readings apart."""
     exception = as_state(parts[-1])
     states = [part for part in parts[:-1] if isinstance(part, State)]
-    if exception is None or not are_simple(*states) or any(map(is_negative, states[-1:])):
+    if exception is None or not are_simple(*states):
         return []
     *others, last = states
     excused = State(f"({joined([last, exception], 'or').text})")

@@ -91,6 +91,22 @@ class Stretches(Intervals, Orders):
         count = f"keep times({counted.state.text}) {sign} {counted.number}"
         return Reading((count, f"keep {counted.state.at(OR)} implies {condition.at(OR)}"))
 
+    def count_and_time(self, counted: Counted, sign: str, duration: Duration) -> Reading | None:
+        """Return the rules of `a at most 3 times and never for longer than 1 s`."""
+        held = as_state(Held(counted.state, sign, duration))
+        if held is None or counted.sign not in ("<", "<=") or sign not in (">", ">="):
+            return None
+        return Reading((f"keep times({counted.state.text}) {counted.sign} {counted.number}", f"avoid {held.text}"))
+
+    def reach_within_and(self, state: State, duration: Duration, other: State) -> list[Reading]:
+        """Return the readings of `reach a within 5 s and b`: both at one step, or each at its own."""
+        both = joined([state, other], "and").at(ATOM)
+        first = f"require eventually within {duration.text} {state.at(ATOM)}"
+        return [
+            Reading((f"require eventually within {duration.text} {both}",), "if all of it must hold at one step"),
+            Reading((first, f"reach {other.text}"), f"if `{other.text}` may come at another step"),
+        ]
+
     def stays_for(self, event: State, duration: Duration) -> Reading:
         """Return the rule of `once a begins, it stays on for 3 s`."""
         state = self.settled.get(event.text, event)

@@ -45,6 +45,27 @@ class TimedAnswers(Rules):
             self._held[state.text] = event
         return state
 
+    # Answers that last.
+
+    def held_or_lasting(self, state: State, *rest: str | Duration) -> list[Asked] | None:
+        """Return the readings of `a held for 4 s`: up to this step, or from it on."""
+        sign, duration = rest[0] if len(rest) > 1 else ">=", rest[-1]
+        assert isinstance(duration, Duration)
+        held = as_state(Held(state, str(sign), duration))
+        if held is None or sign not in (">=", ">") or is_negative(state):
+            return None
+        lasting = State(f"always for {duration.text} {state.at(ATOM)}")
+        return [
+            Asked(Answer("now", held), f"if `{state.text}` has held for {duration.text} up to that step"),
+            Asked(Answer("now", lasting), "if it holds from that step on", is_formula=True),
+        ]
+
+    def free_since(self, start: State, state: State, again: State) -> Asked | None:
+        """Return the answer of `once a and no b since a`."""
+        if start.text != again.text:
+            return None
+        return Asked(Answer("now", State(f"(not {state.at(ATOM)} since {start.at(ATOM)})")))
+
     # Answers that come in a time, and last.
 
     def within(self, state: State, duration: Duration) -> Asked | list[Asked]:
