@@ -226,9 +226,6 @@ ONE_READING = {
     "fire only after spray for 3 s": ["keep begins fire implies time_holding(spray) >= 3 s"],
     "avoid fire unless spray since last fire": ["keep fire implies previously (not fire since (spray and not fire))"],
     "keep health never decreases unless fire": ["keep health >= previous(health) or fire"],
-    "whenever fire then spray or boss_dead within 5 s unless phase is menu": [
-        "keep fire implies eventually within 5 s (spray or boss_dead or phase is menu)"
-    ],
     "whenever fire starts keep fire for exactly 4 steps": [
         "keep begins fire implies (always for 4 steps fire) and weak_next after 4 steps not fire"
     ],
@@ -237,9 +234,6 @@ ONE_READING = {
         "keep ends (phase is menu) or ends (phase is shift) or ends (phase is results) implies fire"
     ],
     "when fire, coins > coins at start": ["keep fire implies coins > initial(coins)"],
-    "whenever fire && spray, boss_dead within 2 frames unless state == Dead": [
-        "keep fire and spray implies eventually within 2 steps (boss_dead or state is Dead)"
-    ],
     "avoid state becomes Dead unless prev(state) == Idle": [
         "keep begins (state is Dead) implies previously (state is Idle)"
     ],

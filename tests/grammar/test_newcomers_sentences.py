@@ -54,10 +54,39 @@ ONE = {
         "keep times(fire) <= 3",
         "avoid time_holding(fire) > 1 s",
     ],
+    "keep fire implies spray if not boss_dead": ["keep fire and not boss_dead implies spray"],
+    "if fire then spray, if not, boss_dead": ["keep fire implies spray", "keep not fire implies boss_dead"],
+    "avoid fire except in the first 2 s of spray": ["keep fire implies spray and time_holding(spray) < 2 s"],
+    "avoid fire unless spray began more than 1 s ago": [
+        "keep fire implies once begins spray and time_since(begins spray) > 1 s"
+    ],
+    "when spray, at most 2 fire in any 3 s": ["keep spray implies times_within(fire, 3 s) <= 2"],
+    "fire only after at most 3 spray since the last fire": [
+        "keep begins fire implies not previously (times_since(spray, fire) > 3)"
+    ],
+    "once phase is menu, phase is never results again": ["keep phase is menu implies always phase is not results"],
+    "when fire is off, spray": ["keep not fire implies spray"],
+    "health never drops by more than 15 from one step to the next": ["keep health >= previous(health) - 15"],
+    "keep at least 2 s between begins fire and the next begins fire": [
+        "avoid (begins fire) then within 2 s (begins fire)"
+    ],
+    "once fire has begun it stays on until not spray": ["keep begins fire implies (fire weak_until not spray)"],
     "require at the end fire and health >= 30": ["require eventually always (fire and health >= 30)"],
     "keep fire implies health <= 5 except in the first 1 s": ["keep time_holding(fire) >= 1 s implies health <= 5"],
 }
 SEVERAL = {
+    "whenever fire then spray or boss_dead within 5 s unless phase is menu": [
+        "keep fire implies phase is menu or (eventually within 5 s (spray or boss_dead))",
+        "keep fire implies eventually within 5 s (spray or boss_dead or phase is menu)",
+    ],
+    "whenever fire && spray, boss_dead within 2 frames unless state == Dead": [
+        "keep fire and spray implies state is Dead or (eventually within 2 steps boss_dead)",
+        "keep fire and spray implies eventually within 2 steps (boss_dead or state is Dead)",
+    ],
+    "reach fire and spray exactly once": [
+        "reach times(fire and spray) >= 1",
+        "keep times(fire and spray) <= 1",
+    ],
     "no second fire within 10 s": [
         "avoid (begins fire) then within 10 s (begins fire)",
         "avoid fire then within 10 s fire",
@@ -172,3 +201,20 @@ def test_a_number_of_the_game_has_no_unit() -> None:
 def test_a_remainder_is_said_to_be_missing() -> None:
     (error,) = errors(SourceFile("a.tltl", f"{HEAD}spec s {{\nkeep times(fire) % 3 == 0 implies spray\n}}\n"))
     assert (error.help or "").startswith("there is no remainder")
+
+
+@pytest.mark.parametrize(
+    "typed",
+    [
+        "fire only if fire was at least 2 s ago",
+        "after spray, exactly 2 fire within 3 s",
+        "when fire, spray within 2 s, otherwise boss_dead",
+        "when fire, doors cannot open within 4 s",
+        "spray or bombs forbidden",
+    ],
+)
+def test_a_sentence_that_a_clause_would_miss_gets_none(typed: str) -> None:
+    (error,) = errors(SourceFile("a.tltl", f"{HEAD}spec s {{\n{typed}\n}}\n"))
+    assert error.fixes == ()
+    assert "`keep fire" not in (error.help or "")
+    assert "in place of" not in (error.help or "")

@@ -29,8 +29,6 @@ FIXED = {
     # An exception.
     "avoid coins - lap > 6 unless fire or spray": ["avoid coins - lap > 6 and not (fire or spray)"],
     "avoid fire unless spray or boss_dead": ["avoid fire and not (spray or boss_dead)"],
-    "keep fire or spray unless boss_dead and coins > 3": ["keep fire or spray or (boss_dead and coins > 3)"],
-    "keep coins >= 3 unless fire and spray": ["keep coins >= 3 or (fire and spray)"],
     "keep fire implies spray unless boss_dead or coins > 3": ["keep fire implies spray or (boss_dead or coins > 3)"],
     "avoid (begins fire) then within 3 s (begins fire) unless once within 3 s spray": [
         "avoid (begins fire) then within 3 s ((begins fire) and not once within 3 s spray)"
@@ -38,7 +36,7 @@ FIXED = {
     "avoid fire and spray except for the first 1 s of spray": ["avoid fire and time_holding(spray) >= 1 s"],
     "avoid fire while spray except in the first 1 s of spray": ["avoid fire and time_holding(spray) >= 1 s"],
     "no fire while spray except during the first 1 s": ["avoid fire and time_holding(spray) >= 1 s"],
-    "avoid fire except for the first 5 steps of spray": ["avoid fire and time_holding(spray) >= 0.5 s"],
+    "avoid fire except for the first 5 steps of spray": ["keep fire implies spray and time_holding(spray) < 0.5 s"],
     "no fire in the first 3 steps of spray": ["avoid fire and spray and time_holding(spray) < 0.3 s"],
     "avoid fire except in the first 3 s": ["require weak_next after 3 s always not fire"],
     "avoid fire and spray unless spray began less than 1 s ago": [

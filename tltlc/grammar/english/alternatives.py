@@ -17,6 +17,8 @@ class Alternatives(Rules):
     def otherwise(self, when: When, event: Event, answers: list[Asked], others: list[Asked]) -> Reading | None:
         """Return the rules of `if a, b, otherwise c`: one for the steps with a, and one for those without it."""
         state = as_state(event)
+        if any(asked.answer.time for asked in (*answers, *others)):
+            return None  # `b within 2 s, otherwise c` may ask for c where b does not come in time
         if when == "after" or state is None or state.text.startswith(("begins ", "ends ")):
             return None
         first, second = (

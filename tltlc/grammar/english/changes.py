@@ -34,7 +34,13 @@ class Changes(Rules):
     def cannot_change_within(self, term: Term, change: Change, sign: str, step: Number, duration: Duration) -> _Found:
         before = self.value_before(term, duration)
         opposite = {">": "<=", ">=": "<"}.get(sign)
-        if before is None or opposite is None or change not in ("falls", "rises") or self.steps(duration) > 1:
+        if before is None or opposite is None or change not in ("falls", "rises"):
+            return None
+        if self.steps(duration) > 1:
+            self.limits.append(
+                f"no clause says by how much `{term.text}` changes in {duration.text}: let the game record that number "
+                "as a signal, and compare it"
+            )
             return None  # each step of that time would count
         operator, relation = ("-", MIRRORED[opposite]) if change == "falls" else ("+", opposite)
         return Reading((f"keep {term.text} {relation} {before.text} {operator} {step.text}",))

@@ -12,10 +12,13 @@ from tltlc.grammar.english.rules import Reading, begun_text
 from tltlc.grammar.english.sequels import Sequels
 from tltlc.grammar.mistakes.sentences.answers import Answer
 from tltlc.grammar.mistakes.sentences.states import ATOM, OR, State
+from tltlc.grammar.mistakes.sentences.vocabulary import NEGATED_SIGN
 
 _SINCE: Final = re.compile(r"times_since\(.*\) (?:<=|>=|<|>|==) \d+")
 """How often something has begun since an event, compared with a number."""
 
+_UPPER: Final = re.compile(r"(<=|<)( \d+)$")
+"""The sign and the number of an upper limit."""
 _Found = Reading | list[Reading] | None
 
 
@@ -68,6 +71,9 @@ def _before(event: State, condition: State) -> State | None:
     """Return a count since an event at the step before, which the event itself would begin anew; else None."""
     if not _is_count(condition) or not _names_own_count(event, condition):
         return None
+    least = _UPPER.sub(lambda sign: NEGATED_SIGN[sign[1]] + sign[2], condition.text)
+    if least != condition.text:  # at the first step, there is no step before
+        return State(f"not previously ({least})", ATOM)
     return State(f"previously ({condition.text})", ATOM)
 
 

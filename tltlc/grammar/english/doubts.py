@@ -41,7 +41,9 @@ def is_english_alone(words: Words) -> bool:
     )
     is_count_in_time = words.find(_AT_LEAST) is not None and words.find(phrases("within", "in")) is not None
     is_goal = words.word(0) == "reach" and (words.find([("before",)]) is not None or is_count_in_time)
-    return is_change or is_end or is_goal or words.word(0) == "without" or has_changed_argument(words)
+    is_goal = is_goal or (words.word(0) == "reach" and words.find(phrases("exactly")) is not None)
+    is_own = words.word(0) in ("without", "once")
+    return is_change or is_end or is_goal or is_own or has_changed_argument(words)
 
 
 def denies_its_own_event(event: str, answer: str) -> bool:

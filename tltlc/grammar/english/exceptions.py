@@ -64,7 +64,9 @@ class Exceptions(Rules):
         if answer.kind == "always" and answer.is_negative and isinstance(event, State) and event.text in self._early:
             return None  # `avoid a except in the first 5 s of b`, which `avoid_except_first` reads
         reading = self._excused_rule(answers, event) or self._kept_or(answers, event)
-        return replace(reading, condition=self._when_meant(event)) if isinstance(reading, Reading) else reading
+        if not isinstance(reading, Reading) or reading.condition:
+            return reading
+        return replace(reading, condition=self._when_meant(event))
 
     def _kept_or(self, answers: list[Asked], event: Event) -> Reading | None:
         """Return the rule of `keep a unless b or c`."""
@@ -90,6 +92,9 @@ class Exceptions(Rules):
             Asked(Answer("within", joined([state, exception], "or"), duration.text), f"{what} in that time is enough"),
         ]
 
+    def within_unless_either(self, state: State, duration: Duration, event: Event) -> list[Asked] | None:
+        return self.eventually_within_unless(duration, state, event)
+
     # What an exception excuses.
 
     def now_excepted(self, *parts: State | Event) -> Asked | None:
@@ -106,11 +111,12 @@ class Exceptions(Rules):
         asked = self.now_excepted(*parts)
         return None if asked is None else Reading((f"keep {asked.answer.state.text}",), asked.condition)
 
-    def avoid_when_unless(self, state: State, when: When, during: State, exception: State) -> _Found:
-        if when == "after" or state.level == OR:
+    def avoid_when_unless(self, state: State, when: When, during: State, event: Event) -> _Found:
+        exception = as_state(event)
+        if when == "after" or state.level == OR or exception is None or exception.text in self._early:
             return None
         both = joined([state, during], "and")
-        return Reading((f"keep {both.at(OR)} implies {exception.at(OR)}",))
+        return Reading((f"keep {both.at(OR)} implies {exception.at(OR)}",), self._when_meant(event))
 
     def avoid_before_unless(self, state: State, first: State, exception: State) -> _Found:
         """Return the readings of `a not before b unless c`: c excuses its own step, or all steps from it on."""
@@ -143,6 +149,8 @@ class Exceptions(Rules):
 
     def both_sentences(self, first: Reading, second: Reading) -> Reading | None:
         """Return the readings of `times(a) <= 5 and no two a within 2 s`: the limit is not about both."""
+        if first.clauses[0].startswith("avoid ") and second.clauses[0].startswith("require not "):
+            return None  # `avoid a and not b before c`
         clauses, is_limit = first.clauses, any(sign in first.clauses[0] for sign in _COMPARED)
         is_apart = is_limit and clauses[0].startswith("keep ") and second.clauses[0].startswith("avoid ")
         if not second.condition or first.condition or clauses[1:] or not is_apart:
@@ -209,7 +217,16 @@ class Exceptions(Rules):
             if is_avoided:
                 return Reading((f"keep {_plain(state)} implies {excuse.at(OR)}",))
             return Reading((f"keep {state.at(OR)} or {excuse.at(ATOM)}",))
-        return super().unless(answers, event) or _excused(state, excuse, is_avoided=is_avoided)
+        known = super().unless(answers, event)
+        if known is not None:
+            return known
+        found = _excused(state, excuse, is_avoided=is_avoided)
+        if not isinstance(found, Reading) or found.condition:
+            return found
+        words = state.text.split()
+        if excuse.level == AND or ({"and", "or"} & {*words} and "not" in words):
+            return replace(found, condition=f"if all of `{excuse.text}` is an exception of all before it")
+        return found
 
     def avoid_held_unless(self, state: State, sign: str, duration: Duration, event: Event) -> _Found:
         """Return the readings of `no a for more than 20 s unless b`."""
@@ -241,10 +258,12 @@ class Exceptions(Rules):
         """Return the rule of `avoid a and b except for the first 1 s of b`, or of play."""
         if not during:
             return Reading((f"require weak_next after {duration.text} always {state.negated().at(ATOM)}",))
-        over = self._held_so_long(during[0], ">=", duration)
-        if over is None:
+        over, early = (self._held_so_long(during[0], sign, duration) for sign in (">=", "<"))
+        if over is None or early is None:
             return None
         others = _without(state, during[0])
+        if others == [state]:  # what is excused is not a part of it
+            return Reading((f"keep {state.at(OR)} implies {early.at(OR)}",))
         return Reading((f"avoid {joined([*others, over], 'and').text}",))
 
     def implies_except_first(self, event: Event, state: State, duration: Duration, *of: State) -> _Found:
@@ -275,6 +294,11 @@ class Exceptions(Rules):
         """Return the rule of `avoid a unless b began less than 1 s ago`."""
         if duration.is_steps or not begun.text.startswith("begins "):
             return None
+        if sign in (">", ">="):
+            came = joined(
+                [State(f"once {begun.text}"), State(f"time_since({begun.text}) {sign} {duration.text}")], "and"
+            )
+            return Reading((f"keep {state.at(OR)} implies {came.at(OR)}",))
         since = State(f"time_since({begun.text}) {NEGATED_SIGN[sign]} {duration.text}")
         return Reading((f"avoid {joined([state, since], 'and').text}",))
 

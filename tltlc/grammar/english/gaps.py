@@ -22,7 +22,8 @@ _JOINING: Final = frozenset(
     "and or not no never unless except besides otherwise else if when whenever while until before after within for "
     "then since only always at least most more less than between again once twice thrice times time first second "
     "third last next previous each every any all both either neither keep reach avoid require implies "
-    "during without upon per".split()
+    "during without upon per cannot can't nothing nobody none nowhere forbidden disabled impossible allowed fail fails "
+    "failed stop stops stopped prevented blocked missing absent anymore".split()
 )
 """Words that say how conditions go together, and so belong to none."""
 

@@ -172,7 +172,7 @@ class Intervals(Rules):
             return None  # a count of its own
         number = int(counted.number) - (counted.sign == "<") if counted.number.isdecimal() else 0
         if counted.sign in ("<=", "<") and number == 1 and counted.state.level == ATOM:
-            return _not_again(counted.state, duration)
+            return apart(counted.state, duration)
         text = f"times_within({counted.state.text}, {duration.text}) {counted.sign} {counted.number}"
         if counted.sign in ("<=", "<"):
             return Reading((f"keep {text}",))
@@ -222,12 +222,16 @@ class Intervals(Rules):
     def again(self, state: State, duration: Duration) -> _Found:
         return not_again(state, state, duration.text) if state.level == ATOM else None
 
+    def apart_beginnings(self, duration: Duration, one: Term, other: Term) -> _Found:
+        begun = f"(begins {one.text})"
+        return Reading((f"avoid {begun} then within {duration.text} {begun}",)) if one.text == other.text else None
+
     def apart(self, duration: Duration, *found: Term | State) -> _Found:
         states = [state for state in found if isinstance(state, State)]
         numbers = [number.text for number in found if isinstance(number, Term)]
         if len({state.text for state in states}) != 1 or states[0].level > ATOM or numbers not in ([], ["2"]):
             return None
-        return _not_again(states[0], duration)
+        return apart(states[0], duration)
 
     # How long.
 
@@ -349,7 +353,8 @@ def _weak_or_strong(weak: Reading | None, strong: Reading, condition: str) -> _F
     return [Reading(weak.clauses, "if play may end in the middle of that time"), Reading(strong.clauses, condition)]
 
 
-def _not_again(state: State, duration: Duration) -> list[Reading]:
+def apart(state: State, duration: Duration) -> list[Reading]:
+    """Return the readings of `at least 5 s between two a`, for one that may last, or for each step."""
     readings = []
     for event, condition in _each_or_begun(state):
         text = event.text if event == state else f"({event.text})"

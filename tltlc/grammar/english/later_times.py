@@ -8,6 +8,7 @@ from typing import Final
 from tltlc.core.record import replace
 from tltlc.grammar.english.answers import MOST_STEPS, Asked, is_negative
 from tltlc.grammar.english.events import Event, as_state
+from tltlc.grammar.english.intervals import apart
 from tltlc.grammar.english.quantities import Duration
 from tltlc.grammar.english.rules import Reading, Rules, When, are_simple, begun_text
 from tltlc.grammar.mistakes.sentences.answers import Answer
@@ -146,7 +147,7 @@ class LaterTimes(Rules):
 
     def only_when_ago(self, state: State, event: State, sign: str, duration: Duration) -> _Found:
         """Return the readings of `b only if a was at least 5 s ago`: some a, or the last one."""
-        if not are_simple(state, event) or is_negative(event):
+        if not are_simple(state, event) or is_negative(event) or begun_text(event) == begun_text(state):
             return None
         rule, seconds = f"keep {state.at(OR)} implies", self._time_text(duration)
         if sign == "<=":
@@ -166,6 +167,9 @@ class LaterTimes(Rules):
 
     def no_sooner_after(self, state: State, duration: Duration, event: State) -> _Found:
         """Return the readings of `b no sooner than 5 s after a`: a must have come, or need not."""
+        own = State(event.text.removeprefix("previously "))
+        if begun_text(own) == begun_text(state):
+            return apart(own, duration)
         readings = self.only_when_ago(state, event, ">=", duration)
         if not isinstance(readings, list):
             return None

@@ -43,7 +43,12 @@ class Rules(Answers):
     """The meanings of the rules of the grammar."""
 
     def both_sentences(self, first: Reading, second: Reading) -> Reading | None:
-        if first.condition or second.condition or any(" or " in clause for clause in first.clauses):
+        if (
+            first.condition
+            or second.condition
+            or first.clauses[0].startswith("reach once ")
+            or any(" or " in clause for clause in first.clauses)
+        ):
             return None
         if second.clauses[0].startswith("avoid ") and " and " in second.clauses[0]:
             return None  # `no a, no b and c` may ask for c
@@ -72,7 +77,7 @@ class Rules(Answers):
         state = self.changes_by_compared(term, change, ">=", step)
         return None if state is None else Reading((f"avoid {state.text}",))
 
-    def keep_change_below(self, term: Term, change: Change, sign: str, step: Number) -> _Found:
+    def keep_change_below(self, term: Term, change: Change, sign: str, step: Number, *_: Duration) -> _Found:
         return self.keep_change(term, change, {">": "<=", ">=": "<"}.get(sign, ""), step)
 
     def avoid_until(self, state: State, end: State) -> _Found:

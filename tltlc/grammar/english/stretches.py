@@ -107,6 +107,11 @@ class Stretches(Intervals, Orders):
             Reading((first, f"reach {other.text}"), f"if `{other.text}` may come at another step"),
         ]
 
+    def stays_until(self, event: State, end: State) -> Reading:
+        """Return the rule of `once a begins, it stays on until b`."""
+        state = self.settled.get(event.text, event)
+        return Reading((f"keep {begun_text(state)} implies ({state.at(ATOM)} weak_until {end.at(ATOM)})",))
+
     def stays_for(self, event: State, duration: Duration) -> Reading:
         """Return the rule of `once a begins, it stays on for 3 s`."""
         state = self.settled.get(event.text, event)

@@ -9,12 +9,15 @@ from tltlc.grammar.english.answers import Asked, is_negative
 from tltlc.grammar.english.events import Event, Held, as_state
 from tltlc.grammar.english.quantities import Duration
 from tltlc.grammar.english.rules import Reading, Rules, When, begun_text
+from tltlc.grammar.english.terminals import Term
 from tltlc.grammar.mistakes.declared_names import DeclaredNames
 from tltlc.grammar.mistakes.sentences.answers import Answer
 from tltlc.grammar.mistakes.sentences.states import ATOM, OR, State, joined
 
 _MOST_STEPS: Final = 10
-"""The most steps of two times, one after the other, of which the longer one may be any: more are too many states."""
+"""The most steps of the first of two times, one after the other, if the second one may be any."""
+_MOST_PAIRS: Final = 150
+"""The most that the steps of both times may be multiplied, if the first one has more steps."""
 
 _Found = Reading | list[Reading] | None
 
@@ -59,6 +62,13 @@ class TimedAnswers(Rules):
             Asked(Answer("now", held), f"if `{state.text}` has held for {duration.text} up to that step"),
             Asked(Answer("now", lasting), "if it holds from that step on", is_formula=True),
         ]
+
+    def never_enum_again(self, name: Term, value: Term) -> Asked | None:
+        """Return the answer of `the door is never locked again`."""
+        state = self.enum(name, value)
+        if state is None:
+            return None
+        return Asked(Answer("now", State(f"always {state.negated().text}")), is_formula=True)
 
     def free_since(self, start: State, state: State, again: State) -> Asked | None:
         """Return the answer of `once a and no b since a`."""
@@ -110,8 +120,8 @@ class TimedAnswers(Rules):
         return asked
 
     def _note_lasting(self, asked: Asked, lasting: Lasting) -> None:
-        steps = min(self.steps(lasting.duration), self.steps(lasting.length))
-        if not 0 < steps <= _MOST_STEPS:
+        first, length = self.steps(lasting.duration), self.steps(lasting.length)
+        if not 0 < first <= _MOST_STEPS and not 0 < first * length <= _MOST_PAIRS:
             self._lasting[asked.answer.state.text] = lasting
 
     def first(self, when: When, event: Event, answers: list[Asked]) -> _Found:

@@ -54,13 +54,21 @@ class Windows(Differences):
     def when_count_within(self, when: When, event: Event, counted: Counted, window: Duration) -> Reading | None:
         """Return the rule of `after a, at most 3 b within 5 s`: the count begins with the last a."""
         state = as_state(event)
-        if state is None or when in ("while", "as long as"):
+        if state is None or when in ("while", "as long as") or counted.sign in ("", "=="):
             return None
         start = begun(state)
         since = f"times_since({counted.state.text}, {start.text}) {counted.sign or '>='} {counted.number}"
         if counted.sign in ("<", "<="):
             return Reading((f"keep once within {window.text} {start.at(ATOM)} implies {since}",))
         return Reading((f"keep {start.at(OR)} implies eventually within {window.text} {since}",))
+
+    def when_count_in_any(self, when: When, event: Event, counted: Counted, window: Duration) -> Reading | None:
+        """Return the rule of `when a, at most 3 b in any 5 s`: the window ends at each step with a."""
+        state = as_state(event)
+        if state is None or when in ("each", "after") or counted.sign not in ("<", "<="):
+            return None
+        count = f"times_within({counted.state.text}, {window.text}) {counted.sign} {counted.number}"
+        return Reading((f"keep {state.at(OR)} implies {count}",))
 
     def count_within_after(self, counted: Counted, window: Duration, event: Event) -> Reading | None:
         return self.when_count_within("after", event, counted, window)

@@ -15,7 +15,9 @@ BEFORE = f"clock 1 Hz\n{RANGES}signal n: int in [0, 9]\n"
         ("keep a implies x > previous(x)", "keep a and previously true implies x > previous(x)"),
         ("keep a and b implies n != previous(n)", "keep a and b and previously true implies n != previous(n)"),
         ("keep a or b implies previous(x) > x", "keep (a or b) and previously true implies previous(x) > x"),
-        ("require always (a implies x < previous(x))", "a and previously true implies x < previous(x)"),
+        ("require always (a implies x < previous(x))", "and previously true"),
+        ("keep a implies b and x > previous(x)", "and previously true"),
+        ("keep a implies (b implies x > previous(x))", "and previously true"),
     ],
 )
 def test_a_change_that_a_condition_asks_for_gets_a_note(clause: str, offered: str) -> None:
@@ -38,6 +40,8 @@ def test_only_the_step_before_the_first_is_not_asked_for() -> None:
     "clause",
     [
         "keep a implies x >= previous(x)",
+        "keep times(a) >= 2 implies x > previous(x)",
+        "keep time_holding(a) >= 2 s implies x > previous(x)",
         "keep ends a implies x > previous(x)",
         "keep a and previously a implies x > previous(x)",
         "keep x > previous(x) implies a",

@@ -12,10 +12,10 @@ BEFORE = f"clock 1 Hz\n{SIGNALS}"
 @pytest.mark.parametrize(
     ("clause", "offered"),
     [
-        ("keep c implies always for 2 s a weak_until b", "(always for 2 s a) or (a until b)"),
-        ("keep c implies always for 2 s a until b", "(always for 2 s a) or (a until b)"),
-        ("keep c implies always for 2 s (a and c) until b", "(always for 2 s (a and c)) or ((a and c) until b)"),
-        ("require (always for 2 s a) until begins b", "(always for 2 s a) or (a until begins b)"),
+        ("keep c implies always for 2 s a weak_until b", "((always for 2 s a) or (a until b))"),
+        ("keep c implies always for 2 s a until b", "((always for 2 s a) or (a until b))"),
+        ("keep c implies always for 2 s (a and c) until b", "((always for 2 s (a and c)) or ((a and c) until b))"),
+        ("require (always for 2 s a) until begins b", "((always for 2 s a) or (a until begins b))"),
     ],
 )
 def test_a_time_before_until_gets_another_formula(clause: str, offered: str) -> None:

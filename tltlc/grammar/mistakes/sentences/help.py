@@ -59,6 +59,8 @@ _ENGLISH_ALONE: Final = (
 """Words whose meaning in English is not that of an operator, or more than that of a comparison."""
 _GOALS: Final = ("reach ", "require eventually ")
 """What clauses begin with that ask for something once, as verbs do."""
+_TIMED: Final = (" implies always for ", " implies eventually ", "time_holding(")
+"""What an exception behind it may end, or excuse at its start alone."""
 _UNITS: Final = frozenset((*REAL_TIME, "step", "steps"))
 
 
@@ -171,6 +173,7 @@ def _is_foreign(fix: Fix, failure: ParseFailure) -> bool:
         token.type in ("EQUALS", "UNEQUAL")
         or (token.text in SYNONYMS and token.text not in names)
         or (token.text in CALLED and token.type == "NAME" and following.text == "(")
+        or (token.text == "is" and following.text in ("on", "off"))
         for token, following in pairwise(tokens)
     )
 
@@ -191,7 +194,7 @@ def _may_miss(failure: ParseFailure, fix: Fix, words: Words) -> bool:
         or is_same
         or is_denied
         or takes_one_reading(text, words)
-        or (words.find(UNLESS) is not None and any(part in text for part in (" implies always for ", "time_holding(")))
+        or (words.find(UNLESS) is not None and any(part in text for part in _TIMED))
     )
 
 

@@ -8,11 +8,14 @@ from typing import Final
 from tltlc.core.record import record
 from tltlc.diagnostics.diagnostic import Label
 from tltlc.grammar.tree import BinaryExpr, CallExpr, NumberExpr, Unary
+from tltlc.grammar.walk import parts
 from tltlc.tools.lint.file_view import FileView, ScopedExpression, operand_text, without_brackets
 from tltlc.tools.lint.rule import LintRule, RuleFinding
 from tltlc.tools.lint.stretches import every_step
 
 _COUNTS: Final = ("times", "times_since", "times_within")
+_EARLIER: Final = ("ends", "previously")
+"""What is about a step before, and so holds at no first step."""
 _NEGATED: Final = {"<": ">=", "<=": ">", "==": "!=", "!=": "==", ">": "<=", ">=": "<"}
 _MIRRORED: Final = {"<": ">", "<=": ">=", "==": "==", "!=": "!=", ">": "<", ">=": "<="}
 
@@ -51,6 +54,8 @@ def _finding(part: ScopedExpression, view: FileView, *, is_avoided: bool) -> Rul
         if tree.op != "once" or is_avoided:
             return None
         event = part.with_tree(tree.operand)
+        if any(isinstance(side, Unary) and side.op in _EARLIER for side in parts(event.tree)):
+            return None
         if tree.bound is not None:
             return _finding_of(part, event, _without(event, part.with_tree(tree.bound.high).text))
         return _finding_of(part, event, f"if it must come at some time, write `reach {event.text}`")
@@ -62,10 +67,12 @@ def _finding(part: ScopedExpression, view: FileView, *, is_avoided: bool) -> Rul
         sign = ">" if sign == "==" and comparison.number.tree.value == 0 else _NEGATED[sign]
     event = part.with_tree(call.arguments[0].value)
     is_time = call.name == "time_since"
-    if is_time and sign in ("<", "<=") and len(call.arguments) == 1:
+    if any(isinstance(side, Unary) and side.op in _EARLIER for side in parts(event.tree)):
+        return None  # TLT0458 says that no first step has it
+    if is_time and sign == "<=" and len(call.arguments) == 1:
         return _finding_of(part, event, _without(event, comparison.number.text))
     least = comparison.number.tree.value + (sign == ">")
-    if is_time or sign not in (">=", ">", "==") or least < 1:
+    if is_time or sign not in (">=", ">", "==") or least < 1 or (sign == "==" and call.name != "times"):
         return None
     if least > 1:
         return _twice_within(part) if call.name == "times_within" else None  # TLT0458 has the others

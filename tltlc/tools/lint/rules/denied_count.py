@@ -23,10 +23,12 @@ def check(view: FileView) -> Iterator[RuleFinding]:
     """
     for spec in view.specs:
         for clause, value in spec.clauses("keep", "require"):
+            rule = without_brackets(value.tree)
             for asked in asked_results(clause, value):
                 event = None if asked.steps else _counted(asked.condition, view)
                 if event is not None and _denied(asked.part) in (event.text, operand_text(event)):
-                    yield _finding(asked, event)
+                    is_whole = isinstance(rule, BinaryExpr) and without_brackets(rule.left) is asked.condition.tree
+                    yield _finding(asked, event, "keep " if clause.kind == "keep" and is_whole else "")
 
 
 def _counted(condition: ScopedExpression, view: FileView) -> ScopedExpression | None:
@@ -50,14 +52,18 @@ def _denied(answer: ScopedExpression) -> str:
     return answer.with_tree(tree.operand).text if isinstance(tree, Unary) and tree.op == "not" else ""
 
 
-def _finding(asked: AskedResult, event: ScopedExpression) -> RuleFinding:
-    condition, answer = asked.condition.text, asked.part.text
+def _finding(asked: AskedResult, event: ScopedExpression, keyword: str) -> RuleFinding:
+    """Return the finding for a rule; ``keyword`` is that of its clause, if the rule is all of it."""
+    condition, answer, counted = asked.condition.text, asked.part.text, operand_text(event)
     label = Label(
         asked.part.source, asked.part.tree.span, f"the step at which the count comes to it has `{event.text}`"
     )
-    help_ = f"for the steps after it, write `keep begins ({condition}) implies weak_next {operand_text(asked.part)}`"
+    begun = f"not begins {counted}"
     if isinstance(asked.part.tree, Unary) and asked.part.tree.op == "not":
-        help_ = f"for the steps after it, write `keep previously ({condition}) implies {answer}`"
+        later = f"previously ({condition}) implies {begun}"
+    else:
+        later = f"begins ({condition}) implies weak_next ({answer.replace(f'not {counted}', begun, 1)})"
+    help_ = f"if no `{event.text}` may begin after it, write `{keyword}{later}`"
     return RuleFinding(f"the `{event.text}` that is counted last breaks this rule", (label,), help_)
 
 

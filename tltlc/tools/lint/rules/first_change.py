@@ -6,7 +6,8 @@ from collections.abc import Iterator
 from typing import Final
 
 from tltlc.diagnostics.diagnostic import Label
-from tltlc.grammar.tree import BinaryExpr, CallExpr, Clause, Expr, Unary
+from tltlc.grammar.past_words import FUNCTIONS
+from tltlc.grammar.tree import BinaryExpr, CallExpr, Expr, Unary
 from tltlc.grammar.walk import parts
 from tltlc.tools.lint.asked_results import AskedResult, asked_results
 from tltlc.tools.lint.file_view import FileView, ScopedExpression, operand_text, without_brackets
@@ -24,9 +25,15 @@ def check(view: FileView) -> Iterator[RuleFinding]:
     """
     for spec in view.specs:
         for clause, value in spec.clauses("keep", "require"):
+            rule = without_brackets(value.tree)
             for asked in asked_results(clause, value):
                 if not asked.steps and _is_change(asked.part) and not _has_step_before(asked.condition.tree):
-                    yield _finding(clause, value, asked)
+                    is_whole = (
+                        isinstance(rule, BinaryExpr)
+                        and without_brackets(rule.left) is asked.condition.tree
+                        and without_brackets(rule.right) is without_brackets(asked.part.tree)
+                    )
+                    yield _finding(asked, "keep " if clause.kind == "keep" and is_whole else "")
 
 
 def _is_change(answer: ScopedExpression) -> bool:
@@ -45,24 +52,24 @@ def _is_change(answer: ScopedExpression) -> bool:
 
 def _has_step_before(condition: Expr) -> bool:
     return any(
-        (isinstance(part, Unary) and part.op in _LATER)
-        or (isinstance(part, CallExpr) and part.name in ("previous", "time_holding"))
+        (isinstance(part, Unary) and part.op in _LATER) or (isinstance(part, CallExpr) and part.name in FUNCTIONS)
         for part in parts(condition)
     )
 
 
-def _finding(clause: Clause, value: ScopedExpression, asked: AskedResult) -> RuleFinding:
+def _finding(asked: AskedResult, keyword: str) -> RuleFinding:
+    """Return the finding for a rule; ``keyword`` is that of its clause, if the rule is all of it."""
     tree, answer = asked.condition.tree, asked.part.text
     is_chain = isinstance(tree, BinaryExpr) and tree.op == "and"
     condition = asked.condition.text if is_chain else operand_text(asked.condition)
     label = Label(asked.part.source, asked.part.tree.span, "false at the first step, where nothing has been before")
-    rule = without_brackets(value.tree)
-    keyword = "keep " if clause.kind == "keep" and isinstance(rule, BinaryExpr) and rule.op == "implies" else ""
     help_ = (
         f"if play may begin with `{asked.condition.text}`, write "
-        f"`{keyword}{condition} and previously true implies {answer}`; if it cannot, allow this with the comment "
-        "`// tltlc: allow TLT0472`"
+        f"`{keyword}{condition} and previously true implies {answer}`"
     )
+    if not keyword:
+        help_ = f"if play may begin with `{asked.condition.text}`, add `and previously true` to that condition"
+    help_ += "; if it cannot, allow this with the comment `// tltlc: allow TLT0472`"
     return RuleFinding(f"a first step with `{asked.condition.text}` breaks this rule", (label,), help_)
 
 

@@ -29,7 +29,7 @@ def _finding(until: ScopedExpression, lasting: ScopedExpression, end: ScopedExpr
     assert isinstance(until.tree, BinaryExpr) and isinstance(lasting.tree, Unary)
     state, word = lasting.with_tree(lasting.tree.operand), until.source.slice(until.tree.op_span)
     label = Label(until.source, until.tree.span, f"each step before `{end.text}` begins this time anew")
-    meant = f"({lasting.text}) or ({operand_text(state)} until {operand_text(end)})"
+    meant = f"(({lasting.text}) or ({operand_text(state)} until {operand_text(end)}))"
     help_ = (
         f"if `{end.text}` may end the time, write `{meant}`; if each step must begin it, allow this with the comment "
         "`// tltlc: allow TLT0468`"
