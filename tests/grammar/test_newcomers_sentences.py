@@ -71,6 +71,8 @@ ONE = {
         "avoid (begins fire) then within 2 s (begins fire)"
     ],
     "once fire has begun it stays on until not spray": ["keep begins fire implies (fire weak_until not spray)"],
+    "check that fire and spray never happen together": ["avoid fire and spray"],
+    "fire before spray before boss_dead": ["reach fire then spray then boss_dead"],
     "require at the end fire and health >= 30": ["require eventually always (fire and health >= 30)"],
     "keep fire implies health <= 5 except in the first 1 s": ["keep time_holding(fire) >= 1 s implies health <= 5"],
 }

@@ -55,11 +55,6 @@ def first_error(clause: str, declarations: str) -> Diagnostic:
         ("stealth", "when alarm then no takedown until hidden", "keep alarm implies (not takedown weak_until hidden)"),
         ("stealth", "when mode becomes chase then alarm", "keep begins mode is chase implies alarm"),
         (
-            "stealth",
-            "when body_found then alarm within 3 s unless disguised",
-            "keep body_found and not disguised implies eventually within 3 s alarm",
-        ),
-        (
             "racing",
             "whenever off_track then not off_track within 4 s",
             "keep off_track implies eventually within 4 s not off_track",

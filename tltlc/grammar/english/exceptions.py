@@ -163,6 +163,14 @@ class Exceptions(Rules):
     def avoid_both(self, one: State, other: State) -> Reading:
         return Reading((f"avoid {joined([one, other], 'and').text}",))
 
+    def in_this_order(self, *states: State) -> _Found:
+        """Return the goal of `a before b before c`."""
+        return (
+            None
+            if any(map(is_negative, states))
+            else Reading((f"reach {' then '.join(state.at(OR) for state in states)}",))
+        )
+
     def never_both(self, one: State, other: State) -> Asked:
         return Asked(Answer("now", joined([one, other], "and").negated()))
 
