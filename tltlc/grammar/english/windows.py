@@ -81,7 +81,7 @@ class Windows(Differences):
         before = "previous(" * int(steps) + name + ")" * int(steps) if steps in range(2, _MOST_STEPS_BACK + 1) else ""
         what = f" (`{before}` is the value {window.text} before)" if before else ""
         self._let_game_record(
-            f"says by how much `{name}` changes in {window.text}{what}", f"{_name(name)}_change in [0, 100]"
+            f"says by how much `{name}` changes in {window.text}{what}", f"{_name(name)}_change in [-100, 100]"
         )
 
     def mean_of(self, term: Term, *windows: Duration) -> None:
@@ -99,7 +99,7 @@ class Windows(Differences):
         if "previous(" not in text or not {"+", "-"} & {*text.split()}:
             return False
         self._let_game_record(
-            f"says by how much a number changes in {every.duration.text}", "recent_change in [0, 100]"
+            f"says by how much a number changes in {every.duration.text}", "recent_change in [-100, 100]"
         )
         return True
 
