@@ -71,6 +71,9 @@ ONE = {
         "avoid (begins fire) then within 2 s (begins fire)"
     ],
     "once fire has begun it stays on until not spray": ["keep begins fire implies (fire weak_until not spray)"],
+    "keep between two fire at least one spray": [
+        "keep begins fire and previously once fire implies previously (times_since(spray, begins fire) >= 1)"
+    ],
     "check that fire and spray never happen together": ["avoid fire and spray"],
     "fire before spray before boss_dead": ["reach fire then spray then boss_dead"],
     "require at the end fire and health >= 30": ["require eventually always (fire and health >= 30)"],

@@ -41,7 +41,7 @@ _LASTING: Final = frozenset("stays stay remains remain must should never".split(
 """Words of a condition alone that make it a rule for every step."""
 _VERBS: Final = phrases("lasts", "takes", "goes", "follows", "is followed", "happens", "must", "may", "changes only")
 """Words that need no `keep` before their sentence."""
-_BEFORE_EVENTS: Final = frozenset(("while", "during"))
+_BEFORE_EVENTS: Final = frozenset(("while", "during", "between"))
 """Words that begin a rule of their own, and need no `keep` before them."""
 _COMING: Final = ("come", "comes")
 _KEYWORDS: Final = ("reach", "keep", "avoid")
