@@ -46,9 +46,9 @@ def test_a_time_of_the_first_rule_may_be_for_all_or_for_the_first_alone() -> Non
     ],
 )
 def test_what_needs_all_values_of_a_window_is_for_the_game_to_record(typed: str, signal: str) -> None:
-    found = read(typed)
-    assert found.readings == ()
-    assert f"`signal {signal}`" in found.limit
+    result = read(typed)
+    assert result.readings == ()
+    assert f"`signal {signal}`" in result.limit
     number = f"{signal.split()[0].rstrip(':')} <= 10{' s' * (': time' in signal)}"
     tltlc.compile_text(f"clock 10 Hz\nsignal {signal}\nspec s {{ keep {number} }}")
 

@@ -26,8 +26,8 @@ class Alternatives(Rules):
             for known, asked in ((state, answers), (state.negated(), others))
         )
         clauses: list[str] = []
-        for found in (first, second):
-            readings = found if isinstance(found, list) else [] if found is None else [found]
+        for answer in (first, second):
+            readings = answer if isinstance(answer, list) else [] if answer is None else [answer]
             if len(readings) != 1 or readings[0].condition:
                 return None
             clauses += readings[0].clauses

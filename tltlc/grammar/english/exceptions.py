@@ -44,10 +44,10 @@ class Exceptions(Rules):
         begun = State(f"once within {duration.text} {begun_text(event)}")
         if event.text.startswith(("begins ", "ends ")):
             return [begun]
-        each = State(f"once within {duration.text} {event.at(ATOM)}")
+        held = State(f"once within {duration.text} {event.at(ATOM)}")
         self._counted_from[begun.text] = f"if the time counts from where `{event.text}` begins"
-        self._counted_from[each.text] = f"if it counts from each step with `{event.text}`"
-        return [begun, each]
+        self._counted_from[held.text] = f"if it counts from each step with `{event.text}`"
+        return [begun, held]
 
     def first_of(self, duration: Duration, event: State) -> State:
         """Return the exception of `except in the first 5 s of a`."""
@@ -228,13 +228,13 @@ class Exceptions(Rules):
         known = super().unless(answers, event)
         if known is not None:
             return known
-        found = _excused(state, excuse, is_avoided=is_avoided)
-        if not isinstance(found, Reading) or found.condition:
-            return found
+        reading = _excused(state, excuse, is_avoided=is_avoided)
+        if not isinstance(reading, Reading) or reading.condition:
+            return reading
         words = state.text.split()
         if excuse.level == AND or ({"and", "or"} & {*words} and "not" in words):
-            return replace(found, condition=f"if all of `{excuse.text}` is an exception of all before it")
-        return found
+            return replace(reading, condition=f"if all of `{excuse.text}` is an exception of all before it")
+        return reading
 
     def avoid_held_unless(self, state: State, sign: str, duration: Duration, event: Event) -> _Found:
         """Return the readings of `no a for more than 20 s unless b`."""

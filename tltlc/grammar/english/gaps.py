@@ -63,9 +63,9 @@ def sentence_with_gaps(words: Words) -> SentenceWithGaps | None:
         for (start, stop), gap in zip(places, gaps, strict=True):
             filled += [*terminals[end:start], Term("BOOL", gap.letter)]
             end = stop
-        found = sentence_of(parser, [*filled, *terminals[end:]], words)
-        if gaps and found.readings:
-            return SentenceWithGaps(tuple(gaps), found)
+        filled_sentence = sentence_of(parser, [*filled, *terminals[end:]], words)
+        if gaps and filled_sentence.readings:
+            return SentenceWithGaps(tuple(gaps), filled_sentence)
     return None
 
 

@@ -281,11 +281,11 @@ class Orders(Rules):
             return None
         states = [self.settled.get(asked.answer.state.text, asked.answer.state) for asked in answers]
         asked_for = joined(states, "and")
-        each = Reading((f"keep {event.text} implies weak_next {asked_for.at(ATOM)}",))
+        after_each = Reading((f"keep {event.text} implies weak_next {asked_for.at(ATOM)}",))
         if not _may_last(event):
-            return each
+            return after_each
         return [
-            Reading(each.clauses, f"if the step after each step with `{event.text}` counts"),
+            Reading(after_each.clauses, f"if the step after each step with `{event.text}` counts"),
             Reading(
                 (f"keep ends {event.at(ATOM)} implies {asked_for.at(OR)}",),
                 f"if only the step at which `{event.text}` has ended counts",

@@ -50,9 +50,9 @@ def warnings(clause: str) -> list[Diagnostic]:
     ],
 )
 def test_a_rule_for_what_the_first_step_must_have_gets_another_clause(clause: str, offered: str | None) -> None:
-    found = warnings(clause)
-    assert len(found) == (offered is not None)
-    for warning in found:
+    given = warnings(clause)
+    assert len(given) == (offered is not None)
+    for warning in given:
         assert warning.title.startswith("the first step must already have `a")
         assert f"`{offered}`" in (warning.help or "")
         assert warning.severity == "warning"

@@ -29,9 +29,9 @@ def check(view: FileView) -> Iterator[RuleFinding]:
             for part in value.parts():
                 tree = part.tree
                 if isinstance(tree, BinaryExpr) and id(tree) not in rules and isinstance(tree.left, CallExpr):
-                    found = _finding(part, tree, tree.left)
-                    if found is not None and tree.left.name not in view.env.scope.names:
-                        yield found
+                    finding = _finding(part, tree, tree.left)
+                    if finding is not None and tree.left.name not in view.env.scope.names:
+                        yield finding
 
 
 def _rules(clause: Clause, value: ScopedExpression) -> list[Expr]:
