@@ -43,6 +43,17 @@ def negation_normal_form(formula: Formula) -> Formula:
     return done[root]
 
 
+def outermost_operators(formula: Formula, *, negated: bool) -> tuple[FormulaOp, list[tuple[FormulaOp, Formula]]]:
+    """Return the outermost operator of the normal form of a formula, or of its negation, and those of its operands.
+
+    Each operand has its operator in the normal form, and the part of ``formula`` that it comes from, without
+    leading negations. This takes time for the outermost operators alone.
+    """
+    op, operands = _expand(_strip((formula, not negated)))
+    gathered = _gather(op, operands) if op in ("and", "or") else operands
+    return op, [(_expand(signed)[0], signed[0]) for signed in gathered]
+
+
 def _is_normal(node: Formula) -> bool:
     op, args = node.op, node.args
     if op == "and" or op == "or":

@@ -7,7 +7,7 @@ from tltlc.logic import formula as build
 from tltlc.logic.bounded_operators import bounded_operator, operands_with_bounds, opposite
 from tltlc.logic.formula import FALSE, TRUE, Formula
 from tltlc.logic.implication import complement
-from tltlc.logic.normal_form import negation_normal_form
+from tltlc.logic.normal_form import negation_normal_form, outermost_operators
 from tltlc.logic.text.phrases import is_state
 from tltlc.logic.text.sequences import next_goal
 
@@ -54,11 +54,24 @@ def is_condition(body: Formula) -> bool:
 
 def avoided_sequence(body: Formula) -> Formula | None:
     """Return ``a & X F(b & X F c)`` if ``G body`` forbids this sequence of three goals or more; None if it does not."""
+    if not _may_be_sequence(body):
+        return None
     sequence = negation_normal_form(build.not_(body))
     goals = [sequence]
     while (following := next_goal(goals[-1])) is not None:
         goals.append(following.body)
     return sequence if len(goals) > 2 and is_state(goals[-1]) else None
+
+
+def _may_be_sequence(body: Formula) -> bool:
+    """Whether the negation of a formula may be three goals in a row: the normal form of a long one takes long."""
+    operator, operands = outermost_operators(body, negated=True)
+    temporal = [(inner, part) for inner, part in operands if not is_state(part)]
+    if operator != "and" or len(temporal) != 1:
+        return False
+    ((inner, part),) = temporal
+    bound = bounded_operator(part.args[0]) if inner == "X" else None
+    return inner in ("F", "X") and (bound is None or not is_state(bound.body))
 
 
 def instructed(state: Formula) -> Formula:

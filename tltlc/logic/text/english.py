@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import Final, NamedTuple
 
+from tltlc.core.names import SpokenName
 from tltlc.logic import formula as build
 from tltlc.logic.bounded_operators import Bounded, bounded_operator
 from tltlc.logic.formula import FALSE, TRUE, Formula
@@ -327,7 +328,8 @@ def _bounded_clause(operator: Bounded, context: _SentenceContext, begins_next: b
     time = "the next " * begins_next + context.counts.time(steps + (begins_next or operator.op == "G"))
     if operator.op == "F":
         if is_state(body):
-            return f"reach {bracketed_phrase(body)} within {time}", _PLAIN
+            goal = f"({phrase(body)})" if isinstance(body.name, SpokenName) else bracketed_phrase(body)
+            return f"reach {goal} within {time}", _PLAIN
         return f"reach within {time} a {_step_noun(body, context)}", _CLAUSE
     if is_state(body):
         return f"{imperative(body, 'keep', 'avoid')} for {time}", _rank_of_state(body)
