@@ -175,11 +175,12 @@ def test_the_best_proposal_has_the_deadline_and_each_proposal_accepts_all_traces
 
 def test_mined_times_are_in_seconds_and_the_file_compiles(tltlc: Run, inside: Path) -> None:
     evidence = timed_evidence(answers(1, 20), 1)
+    atoms = evidence.atoms()
     Path("game.tltl").write_text(library(evidence))
     Path("good").mkdir()
     for number, trace in enumerate(evidence.traces):
-        rows = [",".join(evidence.atoms())]
-        rows += [",".join(str(int(name in letter)) for name in evidence.atoms()) for letter in trace.letters]
+        rows = [",".join(atoms)]
+        rows += [",".join(str(int(name in letter)) for name in atoms) for letter in trace.letters]
         Path(f"good/{number:02}.csv").write_text("\n".join(rows) + "\n")
     outcome = tltlc("mine", "good", "--predicates", "game.tltl", "-o", "mined.tltl", "--json")
     assert outcome.status == 0
@@ -195,11 +196,12 @@ def test_mined_times_are_in_seconds_and_the_file_compiles(tltlc: Run, inside: Pa
 
 def test_the_clock_comes_from_the_times_of_the_samples(tltlc: Run, inside: Path) -> None:
     evidence = timed_evidence(answers(1, 20), 1, traces=20)
+    atoms = evidence.atoms()
     Path("good").mkdir()
     for number, trace in enumerate(evidence.traces):
-        rows = [",".join(["time", *evidence.atoms()])]
+        rows = [",".join(["time", *atoms])]
         for step, letter in enumerate(trace.letters):
-            rows.append(",".join([f"{step / 60:.3f}", *(str(int(name in letter)) for name in evidence.atoms())]))
+            rows.append(",".join([f"{step / 60:.3f}", *(str(int(name in letter)) for name in atoms)]))
         Path(f"good/{number:02}.csv").write_text("\n".join(rows) + "\n")
     outcome = tltlc("mine", "good", "-o", "mined.tltl", "--json")
     assert outcome.status == 0
