@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
@@ -37,18 +38,22 @@ class Phrase:
     ``also`` has other clauses that the phrase may mean; either reading is right. ``explain`` is what
     ``tltlc explain`` says of the clauses that were meant. ``in_words``, in the phrases of later
     writers, is what was meant, in plain English, written together with the phrase. An ``unsayable``
-    phrase means what no clause can say; it has no ``meant``, ``formula`` and ``explain``.
+    phrase means what no clause can say; it has no ``meant``, ``formula`` and ``explain``. ``outcome``
+    is the kind of its ``Outcome``. ``clock`` takes the place of the prelude's: formulas with a long time at a fast
+    clock take half a minute to compare.
     """
 
     source: str
     prelude: str
     typed: str
+    outcome: Kind
     meant: str = ""
     formula: str = ""
     explain: str = ""
     also: tuple[str, ...] = ()
     in_words: str = ""
     unsayable: bool = False
+    clock: str = ""
 
 
 @record
@@ -80,7 +85,11 @@ def prelude(name: str) -> str:
 
 
 def spec_text(phrase: Phrase, clauses: str) -> str:
-    return f"{prelude(phrase.prelude)}spec s {{\n{clauses.strip()}\n}}\n"
+    declarations = prelude(phrase.prelude)
+    if phrase.clock:
+        declarations, count = re.subn(r"^clock .*$", f"clock {phrase.clock}", declarations, count=1, flags=re.MULTILINE)
+        assert count == 1
+    return f"{declarations}spec s {{\n{clauses.strip()}\n}}\n"
 
 
 def errors(source: SourceFile) -> list[Diagnostic]:
@@ -135,7 +144,7 @@ def _is_named(phrase: Phrase, text: str, left: list[Diagnostic]) -> bool:
     known = [*helps, *(line.strip() for line in body if line.strip().split(" ")[0] in _KEYWORDS)]
 
     def is_known(clause: str) -> bool:
-        return any(clause == other or _means(phrase, clause, other) for other in known)
+        return clause in known or any(_means(phrase, clause, other) for other in known)
 
     readings = [reading.strip().splitlines() for reading in (phrase.meant, *phrase.also)]
     return bool(helps) and any(all(is_known(line.strip()) for line in lines) for lines in readings if lines)

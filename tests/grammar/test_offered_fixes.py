@@ -27,7 +27,7 @@ from tltlc.grammar.parser import parse
 from tltlc.tools.lint.scopes import apply_edits
 
 PHRASES = tuple(phrases())
-MUTATIONS = 4
+MUTATIONS = 2
 """How many mistakes are made in each clause."""
 
 
