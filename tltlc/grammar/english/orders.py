@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from itertools import pairwise
 from typing import Final
 
+from tltlc.core.record import replace
 from tltlc.grammar.english.answers import Asked, is_negative
 from tltlc.grammar.english.events import Counted, Event, Held, as_state
 from tltlc.grammar.english.quantities import Duration
@@ -132,6 +133,15 @@ class Orders(Rules):
             return Reading((f"reach {goal} then within {duration.text} {last.at(OR)}",))
         timed = joined([last, State(f"once within {duration.text} {begun_text(earlier[at])}")], "and")
         return Reading((f"reach {goal} then {timed.at(ATOM)}",))
+
+    def reach_goals_within_of_first(self, goals: Goals, duration: Duration, start: State) -> _Found:
+        reading = self.reach_goals_within_of(goals, duration, start)
+        return replace(reading, condition=f"if `{start.text}` begins once") if isinstance(reading, Reading) else None
+
+    def reach_goals_within_of_value(self, goals: Goals, duration: Duration, value: Term) -> _Found:
+        name = self.enum_of(value)
+        start = None if name is None else State(f"{name.text} is {value.text}")
+        return None if start is None else self.reach_goals_within_of(goals, duration, start)
 
     def within_reach_goals(self, duration: Duration, goals: Goals) -> _Found:
         return self.reach_goals_within(goals, duration)

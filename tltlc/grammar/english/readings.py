@@ -8,9 +8,10 @@ from typing import Any, Final
 
 from tltlc.core.record import record
 from tltlc.grammar.english.alternatives import Alternatives
+from tltlc.grammar.english.arguments import with_read_arguments
 from tltlc.grammar.english.bounds import Bounds
 from tltlc.grammar.english.counts_since import CountsSince
-from tltlc.grammar.english.events import Crossing
+from tltlc.grammar.english.events import Crossing, as_state
 from tltlc.grammar.english.exceptions import Exceptions
 from tltlc.grammar.english.extremes import Extremes
 from tltlc.grammar.english.forms import Form, Part, forms
@@ -83,6 +84,9 @@ def sentence(words: Words) -> Sentence:
     Several lines may be one sentence, or one for each line. Without lark, which the playground does not
     load, no sentence is read.
     """
+    typed, words = words, with_read_arguments(words, _said_condition)
+    if words is not typed and is_valid((words.text,)):
+        return Sentence((Reading((words.text,)),))
     whole = _sentence(words)
     needs_no_keep = words.word(0) == "keep" and (words.word(1) in _BEFORE_EVENTS or words.find(_VERBS))
     if not whole.readings and not whole.limit and needs_no_keep:
@@ -99,6 +103,16 @@ def sentence(words: Words) -> Sentence:
     if any(len(line.readings) != 1 for line in sentences):
         return whole
     return Sentence((Reading(tuple(clause for line in sentences for clause in line.readings[0].clauses)),))
+
+
+def _said_condition(words: Words) -> str:
+    """Return the condition that words say; "" if they say none, or may say several."""
+    parser = sentence_parser()
+    terminals = terms(words, parser.vocabulary) if parser else None
+    tree = parser.parse(terminals, "part") if parser and terminals else None
+    values = _values(tree.children[0], Meanings(words.names)) if tree else []
+    state = as_state(values[0]) if len(values) == 1 else None
+    return state.text if state is not None else ""
 
 
 def unread_rule(words: Words) -> str:

@@ -186,6 +186,18 @@ class Sequels(Stretches):
     ) -> _Found:
         return self._each_reading(when, event, self.lasting_unless(state, duration, exception) or [])
 
+    def lasts_unless(self, state: State, *rest: Duration | tuple[Duration, Duration] | Event) -> _Found:
+        """Return the rule of `a lasts at least 3 s and at most 8 s unless b`: b may end it sooner."""
+        *times, event = rest
+        durations = [duration for time in times for duration in (time if isinstance(time, tuple) else (time,))]
+        least, *most = [duration for duration in durations if isinstance(duration, Duration)]
+        lasting = self.lasting_unless(state, least, event) if not isinstance(event, (tuple, Duration)) else None
+        longest = self.keep_short(state, most[0]) if most else None
+        if lasting is None or (most and not isinstance(longest, Reading)):
+            return None
+        sooner = Reading((f"keep {begun_text(state)} implies {lasting[0].answer.state.text}",))
+        return replace(sooner, clauses=(*sooner.clauses, *(longest.clauses if isinstance(longest, Reading) else ())))
+
     def forever_unless(self, state: State, event: Event) -> list[Asked] | None:
         """Return the readings of `always a unless b`: b ends it, or excuses each of its steps."""
         exception = as_state(event)

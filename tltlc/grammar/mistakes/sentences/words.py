@@ -80,7 +80,10 @@ class Words(Sequence[Word]):
             return ""
         pieces = [self._spelling(self._words[0])]
         for word, following in pairwise(self._words):
-            is_close = word.end == following.start and not word.is_renamed and not following.is_renamed
+            is_renamed = word.is_renamed or following.is_renamed
+            is_close = word.end == following.start and (
+                not is_renamed or word.text == "(" or following.text in (")", ",")
+            )
             pieces.append("" if is_close else " ")
             pieces.append(self._spelling(following))
         return " ".join("".join(pieces).split())
