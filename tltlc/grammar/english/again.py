@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from tltlc.core.record import replace
 from tltlc.grammar.english.answers import Asked
 from tltlc.grammar.english.doubts import denies_its_own_event
 from tltlc.grammar.english.events import Event, as_state
@@ -112,7 +113,18 @@ class Again(Sequels):
         formula = answers[0].answer.state.text
         is_compound = state is not None and state.level > ATOM and not answers[1:]
         if state is not None and is_compound and denies_its_own_event(state.text, formula):
-            return Reading((f"keep {state.at(OR)} implies weak_next {formula}",))
+            again = Reading((f"keep {state.at(OR)} implies weak_next {formula}",))
+            if not self.is_before or until is None:
+                return again
+            kept, end = until
+            first = f"({end.negated().at(ATOM)} weak_until {kept.at(ATOM)})"
+            return [
+                Reading(
+                    (f"keep {state.at(OR)} implies {first}",),
+                    f"if `{kept.text}` must come before `{end.text}`, or with it",
+                ),
+                replace(again, condition=f"if `{kept.negated().text}` must not hold again before `{end.text}`"),
+            ]
         if state is None or until is None or answers[1:] or not are_simple(state):
             return None
         if begun_text(until[0].negated()) != begun_text(state):

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Final
 
+from tltlc.grammar.english.changed_arguments import changed_name
 from tltlc.grammar.mistakes.sentences.kinds import call_end
 from tltlc.grammar.mistakes.sentences.validity import is_valid
 from tltlc.grammar.mistakes.sentences.words import Word, Words
@@ -36,7 +37,8 @@ def with_read_arguments(words: Words, read: ReadCondition) -> Words:
         start, position = at + 2, 0
         while positions and start < stop:
             end = _argument_end(words, start, stop - 1)
-            text = _condition(words[start:end], read) if position in positions else ""
+            is_read = position in positions and not changed_name(words, start)
+            text = _condition(words[start:end], read) if is_read else ""
             if text:
                 first = words[start]
                 said = words.of([Word(text, "NAME", False, first.start, words[end - 1].end, True)])

@@ -36,7 +36,7 @@ def change_of(name: str, declared: DeclaredName) -> str:
 
 def has_changed_argument(words: Words) -> bool:
     """Whether an argument of a function is a change: `(changes mode, …)`, `(a, mode changes)`."""
-    return any(_changed(words, at) for at in range(1, len(words)))
+    return any(changed_name(words, at) for at in range(1, len(words)))
 
 
 def with_changes(words: Words, following: Words) -> str:
@@ -45,10 +45,10 @@ def with_changes(words: Words, following: Words) -> str:
     Changes of an enum or bool that are counted become a sum, because those at steps in a row would count once.
     ``following`` are the words after the call, with which it may be compared.
     """
-    changed = next((at for at in range(1, len(words)) if _changed(words, at)), 0)
+    changed = next((at for at in range(1, len(words)) if changed_name(words, at)), 0)
     if not changed:
         return words.text
-    name = _changed(words, changed)
+    name = changed_name(words, changed)
     declared, most = words.names.names[name], _most(following)
     rest = with_changes(words[changed + 2 :], following)
     if changed == 2 and words[0].text in _COUNTS and declared.type in ("enum", "bool") and most:
@@ -64,7 +64,7 @@ def _most(following: Words) -> str:
     return str(int(number) + _MORE[sign]) if sign in _MORE and number.isdecimal() else ""
 
 
-def _changed(words: Words, at: int) -> str:
+def changed_name(words: Words, at: int) -> str:
     """Return the name of which an argument at an index says that it changes; "" if it says something else."""
     if words[at - 1].text not in _BEFORE or at + 2 >= len(words) or words[at + 2].text not in _BEHIND:
         return ""

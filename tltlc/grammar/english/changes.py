@@ -87,6 +87,11 @@ class Changes(Rules):
         state = comparison(left, sign, right)
         return None if state is None else Reading((f"keep {state.negated().text}",))
 
+    def cannot_stay_compared(self, left: Number, sign: str, right: Number, held: str, duration: Duration) -> _Found:
+        """Return the rule of `x is never below 20 for more than 10 s`."""
+        state = comparison(left, sign, right)
+        return None if state is None else self.avoid(Held(state, held, duration))
+
     def falls_but_never(self, term: Term, limit: Number, sign: str, never: Number) -> _Found:
         return self._reached_but_never(term, "<", limit, sign, never)
 

@@ -30,6 +30,7 @@ class Conditions(Quantities):
     def __init__(self, names: DeclaredNames) -> None:
         super().__init__(names)
         self.is_again = False
+        self.is_before = False
         """Whether the sentence says `again`."""
         self.is_coming = False
         """Whether the sentence says `comes`."""

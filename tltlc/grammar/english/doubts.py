@@ -21,6 +21,8 @@ _ENDS_OF_RANGE: Final = (("is", "full"), ("is", "empty"))
 def takes_one_reading(clause: str, words: Words) -> bool:
     """Whether a clause that patterns make of a sentence may miss its meaning."""
     event, _, answer = clause.removeprefix("keep ").partition(" implies ")
+    if words.find([("between",)]) is not None and "times(" in clause:
+        return True  # it counts from the first step on
     if words.find([("before",)]) and " weak_until " in answer:
         return True  # the event may come at the same step, may have to come, and may be asked for once
     is_lasting = words.find(LASTING) or words.word(0) == "in"

@@ -55,10 +55,10 @@ class Intervals(Rules):
         return _between(state.negated(), span)
 
     def keep_between(self, state: State, span: Span) -> _Found:
-        return _between(state, span)
+        return None if "times(" in state.text else _between(state, span)  # it counts from the first step on
 
     def between_keep(self, span: Span, state: State) -> _Found:
-        return _between(state, span)
+        return self.keep_between(state, span)
 
     def count_between(self, counted: Counted, span: Span) -> _Found:
         start, end = span.start, span.end

@@ -198,6 +198,7 @@ def sentence_of(parser: SentenceParser, terminals: Sequence[Term], words: Words)
     rules = Meanings(words.names)
     rules.is_lasting = any(term.text in _LASTING for term in terminals)
     rules.is_again = any(term.text == "again" for term in terminals)
+    rules.is_before = any(term.text == "before" for term in terminals)
     rules.is_coming = any(term.text in _COMING for term in terminals)
     for reading in _values(tree.children[0], rules):
         unique.setdefault(reading.clauses, reading)

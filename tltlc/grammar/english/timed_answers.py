@@ -12,7 +12,7 @@ from tltlc.grammar.english.rules import Reading, Rules, When, begun_text
 from tltlc.grammar.english.terminals import Term
 from tltlc.grammar.mistakes.declared_names import DeclaredNames
 from tltlc.grammar.mistakes.sentences.answers import Answer
-from tltlc.grammar.mistakes.sentences.states import ATOM, OR, State, joined
+from tltlc.grammar.mistakes.sentences.states import AND, ATOM, OR, State, joined
 
 _MOST_STEPS: Final = 10
 """The most steps of the first of two times, one after the other, if the second one may be any."""
@@ -84,6 +84,9 @@ class TimedAnswers(Rules):
             return self.within_first_lasting(duration, held.state, held.duration)
         if settled is not None and state.text.startswith("ends "):
             return Asked(Answer("within", settled, duration.text))  # one step without it is enough
+        first, _, second = state.text.partition(" and ")
+        if second in (f"ends {first}", f"not {first}"):  # which are never true at the step of the first
+            return Asked(Answer("now", State(f"{first} and eventually within {duration.text} {second}", AND)), "", True)
         return super().within(state, duration)
 
     def within_first_lasting(self, duration: Duration, state: State, length: Duration) -> list[Asked]:
