@@ -31,6 +31,8 @@ spec get_tired { limit 3 steps  require eventually tired }
 """
 """With random actions some episodes meet the spec, and others fail."""
 MISSING: Final = object()
+PARTS: Final = 4
+"""A change is tried with every fourth value, so that each value has a quarter of the changes."""
 REPLACEMENTS: Final[Mapping[str, Callable[[Any], object]]] = {
     "missing": lambda value: MISSING,
     "None": lambda value: None,
@@ -202,7 +204,9 @@ def test_changes_that_once_crashed_are_rejected_or_harmless(made: tuple[Training
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", REPLACEMENTS)
-def test_every_change_of_each_value_is_rejected_or_harmless(
+def test_changes_of_each_value_are_rejected_or_harmless(
     made: tuple[TrainingRun, Content], tmp_path: Path, name: str
 ) -> None:
-    check(made, [(path, name) for path in values(made[1])], tmp_path)
+    """Each value is changed in several ways, and each way is tried with a part of the values: all would take long."""
+    first = list(REPLACEMENTS).index(name) % PARTS
+    check(made, [(path, name) for path in [*values(made[1])][first::PARTS]], tmp_path)
