@@ -19,7 +19,8 @@ class Alternatives(Rules):
         state = as_state(event)
         if any(asked.answer.time for asked in (*answers, *others)):
             return None  # `b within 2 s, otherwise c` may ask for c where b does not come in time
-        if when == "after" or state is None or state.text.startswith(("begins ", "ends ")):
+        is_change = state is not None and state.text.startswith(("begins ", "ends "))
+        if when == "after" or state is None or (is_change and not all(map(_says_next_value, (*answers, *others)))):
             return None
         first, second = (
             self.implies(known, [*map(_at_this_step, asked)])
@@ -63,7 +64,14 @@ class Alternatives(Rules):
 
 
 def _at_this_step(asked: Asked) -> Asked:
-    """Return `no a` as an answer for the step of its case alone, which ends the other one."""
+    """Return `no a` and `keep a` as answers for the step of their case alone, which ends the other one."""
+    if asked.answer.kind == "now" and asked.answer.keyword == "keep":
+        return replace(asked, answer=replace(asked.answer, keyword=""))
     if asked.is_formula or asked.answer.kind != "always" or not asked.answer.is_negative:
         return asked
     return replace(asked, answer=replace(asked.answer, kind="now", is_negative=False))
+
+
+def _says_next_value(asked: Asked) -> bool:
+    """Whether an answer says what a number is, compared with that of the step before: it has one at every step."""
+    return asked.answer.kind == "now" and "previous(" in asked.answer.state.text

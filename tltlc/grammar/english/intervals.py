@@ -11,6 +11,7 @@ from tltlc.grammar.english.events import Counted, Event, Held, as_state
 from tltlc.grammar.english.quantities import Duration
 from tltlc.grammar.english.rules import Goals, Reading, Rules, When, are_simple, begun_text, never_held, not_again
 from tltlc.grammar.english.terminals import Term
+from tltlc.grammar.mistakes.sentences.changes import keeps_values
 from tltlc.grammar.mistakes.sentences.states import AND, ATOM, OR, State, joined
 
 _MOST_COUNTED: Final = 2
@@ -113,7 +114,7 @@ class Intervals(Rules):
     # Until, at first and at last.
 
     def until_rule(self, state: State, end: State) -> _Found:
-        if not are_simple(state, end):
+        if not are_simple(end) or not (are_simple(state) or keeps_values(state.text)):
             return None
         a, b = state.at(ATOM), end.at(ATOM)
         return [
@@ -231,6 +232,8 @@ class Intervals(Rules):
         numbers = [number.text for number in found if isinstance(number, Term)]
         if len({state.text for state in states}) != 1 or states[0].level > ATOM or numbers not in ([], ["2"]):
             return None
+        if is_edge(states[0]) and not numbers and not states[1:]:
+            return None  # the other end of that time is missing
         return apart(states[0], duration)
 
     # How long.
@@ -310,9 +313,14 @@ def _between(state: State, span: Span) -> Reading | None:
     return Reading((f"keep {begun_text(start)} implies ({state.at(ATOM)} weak_until {end.at(ATOM)})",))
 
 
+def is_edge(state: State) -> bool:
+    """Whether a condition is the beginning or the end of one."""
+    return state.text.startswith(("begins ", "ends "))
+
+
 def _each_or_begun(state: State) -> list[tuple[State, str]]:
     """Return an event, and its beginning where it may last for several steps, with what tells them apart."""
-    if state.text.startswith(("begins ", "ends ")):
+    if is_edge(state):
         return [(state, "")]
     return [(State(begun_text(state)), "if steps in a row count once"), (state, "if each step counts")]
 
@@ -357,6 +365,6 @@ def apart(state: State, duration: Duration) -> list[Reading]:
     """Return the readings of `at least 5 s between two a`, for one that may last, or for each step."""
     readings = []
     for event, condition in _each_or_begun(state):
-        text = event.text if event == state else f"({event.text})"
+        text = f"({event.text})" if is_edge(event) else event.text
         readings.append(Reading((f"avoid {text} then within {duration.text} {text}",), condition))
     return readings

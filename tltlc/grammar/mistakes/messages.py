@@ -43,7 +43,7 @@ from tltlc.grammar.mistakes.parse_failure import (
     quote_token,
 )
 from tltlc.grammar.mistakes.past import past_in_english
-from tltlc.grammar.mistakes.prohibitions import never_joined
+from tltlc.grammar.mistakes.prohibitions import never_states
 from tltlc.grammar.mistakes.punctuation import PUNCTUATION, missing_comma
 from tltlc.grammar.mistakes.quantifier_words import quantifier_in_words
 from tltlc.grammar.mistakes.renaming import word_of_the_past
@@ -373,7 +373,7 @@ _RULES: Final = (
     duration_in_words,
     never_counted,
     never_for_time,
-    never_joined,
+    never_states,
     past_in_english,
     rule_in_words,
     plain_english,

@@ -57,6 +57,8 @@ _ENGLISH_ALONE: Final = (
     ),
 )
 """Words whose meaning in English is not that of an operator, or more than that of a comparison."""
+_VERBS: Final = phrases("change", "changes", "stay", "stays", "remain", "remains")
+"""Verbs of a sentence behind `require`, which asks for something at the first step alone."""
 _GOALS: Final = ("reach ", "require eventually ")
 """What clauses begin with that ask for something once, as verbs do."""
 _TIMED: Final = (" implies always for ", " implies eventually ", "time_holding(")
@@ -114,7 +116,7 @@ def _with_reading(
         (is_whole and not _is_foreign(known.fixes[0], failure)) or _has_readings(failure, known.help or "")
     ):
         return known
-    if words.word(0) == "require" and words.word(1) in ("at", "the", "in", "for"):
+    if words.word(0) == "require" and (words.word(1) in ("at", "the", "in", "for") or words.find(_VERBS)):
         words = words[1:]
     if not words or words.word(0) == "require":
         return known
