@@ -255,7 +255,8 @@ PHRASES: Final[Mapping[str, str]] = {
     "stays_on": "stays|stays on|must stay|must stay on|remains|stays active|must last|lasts|keeps on|remains on|"
     "stays true|remains true|must remain|must hold|has to stay on|should stay on|goes on|continues|stay on|"
     "remain on|holds|keeps going|stays up",
-    "was_true": "was true|was on|was active|was|has been true|has been on|has been",
+    "was_true": "was true|was on|was active|was|has been true|has been on|has been|was used|has been used|was pressed|"
+    "has been pressed|was shown|was visible|was seen|was heard|happened|has happened|occurred|has occurred",
     "anymore": "anymore|any more|any longer|now",
     "no_longer": "is no longer",
     "by_then": "by then|first|in time|in this time|in that time|in meantime|meanwhile|in between",
