@@ -16,7 +16,21 @@ ONE = {
     ],
     "keep begins fire implies spray happened in the last 3 s": ["keep begins fire implies once within 3 s spray"],
     "fire only if spray was pressed in the last 2 s": ["keep fire implies once within 2 s spray"],
+    # Two events.
+    "never fire twice without spray in between": ["keep times_since(fire, spray) <= 1"],
+    "no two fire without spray in between": ["keep times_since(fire, spray) <= 1"],
+    "fire never 3 times without spray between them": ["keep times_since(fire, spray) <= 2"],
+    "at least 2 s between two begins fire": ["avoid (begins fire) then within 2 s (begins fire)"],
+    "at least 2 s between two starts of fire": ["avoid (begins fire) then within 2 s (begins fire)"],
+    "keep ends fire implies between 6 s and 12 s since begins fire": [
+        "keep ends fire implies time_since(begins fire) >= 6 s and time_since(begins fire) <= 12 s"
+    ],
+    "when fire ends, at least 6 s since fire began": ["keep ends fire implies time_since(begins fire) >= 6 s"],
 }
+NONE = [
+    "keep begins fire implies at least 3 s since begins fire",  # which is 0 s at each beginning
+    "when spray then at least 3 s since fire",  # its first step, or its last one
+]
 
 
 def help_of(typed: str) -> list[str]:
@@ -31,6 +45,11 @@ def test_a_sentence_with_one_meaning_gets_its_clauses(typed: str) -> None:
     tltlc.compile_text(f"{HEAD}spec s {{\n{chr(10).join(clauses)}\n}}\n")
 
 
+@pytest.mark.parametrize("typed", NONE)
+def test_a_time_since_an_event_gets_no_clause_that_may_miss_its_meaning(typed: str) -> None:
+    assert "time_since(" not in "".join(help_of(typed))
+
+
 @pytest.mark.parametrize("clause", sorted({pattern.clause for patterns in PAST.values() for pattern in patterns}))
 def test_a_form_that_looks_back_compiles(clause: str) -> None:
     text = clause.format(t="fire", r="spray", p="spray", T="2 s")
@@ -43,7 +62,8 @@ def test_a_form_that_looks_back_compiles(clause: str) -> None:
         (
             "whenever fire ends, spray was on used in the last 3 s",
             [
-                "`keep ends fire implies once within 3 s spray`: at each step with `ends fire`, `spray` then or at most 3 s before"
+                "`keep ends fire implies once within 3 s spray`: "
+                "at each step with `ends fire`, `spray` then or at most 3 s before"
             ],
         ),
         (

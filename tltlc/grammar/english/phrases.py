@@ -209,7 +209,7 @@ PHRASES: Final[Mapping[str, str]] = {
     "begins": "has begun|have begun|has started|"
     "begins|begin|began|starts|start|started|begun|triggers|is triggered|goes up|turns on|happens|appears|"
     "turns true",
-    "begins_first": "begins|start of|beginning of|begin of|onset of",
+    "begins_first": "begins|start of|beginning of|begin of|onset of|starts of|beginnings of",
     "ends": "is lost|lost|gets lost|ends|end|ended|stops|stop|stopped|is over|goes down|turns off|"
     "is finished|disappears|turns false|"
     "finishes",
