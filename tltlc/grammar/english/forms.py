@@ -31,6 +31,10 @@ _INEXPRESSIBLE: Final = frozenset(
     "unless except otherwise else changes change changing toggles toggle flips flip switches switch".split()
 )
 """Words for exceptions, for two cases and for changes, which no form has."""
+_PAST_WORDS: Final = frozenset("last past previous".split())
+"""Words before a time that lies behind each step."""
+_WHOLE: Final = frozenset("for always throughout whole no not never during".split())
+"""Words that may ask for every step of such a time, or for none."""
 _EDGES: Final = ("begins", "ends")
 _BEGUN: Final = ("begins ", "ends ")
 _BEGINNINGS: Final = frozenset("begins begin starts start becomes".split())
@@ -146,6 +150,19 @@ _THREE: Final = (
     _Pattern("keep {t} and {c} implies {r}", "at each step with {t} and {c}, {r}",
              "while during unless"),
 )  # fmt: skip
+PAST: Final[Mapping[str, Sequence[_Pattern]]] = {
+    "event answer time": (
+        _Pattern("keep {t} implies once within {T} {r}", "at each step with {t}, {r} then or at most {T} before", ""),
+    ),
+    "event time answer": (
+        _Pattern("keep once within {T} {t} implies {r}", "at each step at most {T} after {t}, {r}", ""),
+    ),
+    "answer event time": (
+        _Pattern("keep {p} implies once within {T} {t}", "{p} only at most {T} after {t}, or at the same step", ""),
+        _Pattern("keep once within {T} {t} implies {r}", "at each step at most {T} after {t}, {r}", ""),
+    ),
+}
+"""Maps the order of two conditions and a time such as `in the last 3 s` to the forms, which look back."""
 PATTERNS: Final[Mapping[tuple[int, bool, bool], Sequence[_Pattern]]] = {
     (1, False, False): _ONE,
     (1, True, False): _ONE_IN_TIME,
@@ -181,6 +198,8 @@ def forms(parts: Sequence[Part]) -> tuple[Form, ...]:
     texts = {name: state.at(ATOM) for name, state in slots.items()}
     texts.update(T=durations[0].text if durations else "", n=numbers[0] if numbers else "")
     cues = set(words)
+    if key == (2, True, False) and not _PAST_WORDS.isdisjoint(words):
+        return _past_forms(parts, slots, texts)
     known = [p for p in PATTERNS[key] if words[:1] not in (["keep"], ["avoid"]) or not p.clause.startswith("reach")]
     known = [pattern for pattern in known if _keeps_words(pattern, cues, slots)]
     ranked = sorted(known, key=lambda pattern: -len(cues & set(pattern.cues.split())))
@@ -194,6 +213,22 @@ def forms(parts: Sequence[Part]) -> tuple[Form, ...]:
     fitting = [p for p in fitting if not (in_steps and "time_holding" in p.clause)]  # which is a time in seconds
     all_forms = (Form(p.clause.format(**texts), p.says.format(**quoted)) for p in fitting)
     return tuple({form.clause: form for form in all_forms}.values())[:_MOST_FORMS]
+
+
+def _past_forms(parts: Sequence[Part], slots: Mapping[str, State], texts: Mapping[str, str]) -> tuple[Form, ...]:
+    """Return the forms of `whenever a, b in the last 3 s`; () if each step of that time may be meant."""
+    words = {part.text for part in parts if isinstance(part, Term)}
+    conditions = [at for at, part in enumerate(parts) if isinstance(part, State)]
+    time = next(at for at, part in enumerate(parts) if isinstance(part, Duration))
+    is_event_first = slots["t"] == _signed(parts, conditions[0])
+    if not _WHOLE.isdisjoint(words) or time < conditions[0] or texts["r"].startswith("time_holding("):
+        return ()
+    if time > conditions[1]:
+        order = "event answer time" if is_event_first else "answer event time"
+    else:
+        order = "event time answer" if is_event_first else ""
+    quoted = {name: text if name == "T" else f"`{text}`" for name, text in texts.items()}
+    return tuple(Form(p.clause.format(**texts), p.says.format(**quoted)) for p in PAST.get(order, ()))
 
 
 def _with_edges(parts: Sequence[Part]) -> list[Part]:

@@ -209,7 +209,7 @@ PHRASES: Final[Mapping[str, str]] = {
     "begins": "has begun|have begun|has started|"
     "begins|begin|began|starts|start|started|begun|triggers|is triggered|goes up|turns on|happens|appears|"
     "turns true",
-    "begins_first": "begins|start of|beginning of|begin of|onset of",
+    "begins_first": "begins|start of|beginning of|begin of|onset of|starts of|beginnings of",
     "ends": "is lost|lost|gets lost|ends|end|ended|stops|stop|stopped|is over|goes down|turns off|"
     "is finished|disappears|turns false|"
     "finishes",
@@ -255,7 +255,8 @@ PHRASES: Final[Mapping[str, str]] = {
     "stays_on": "stays|stays on|must stay|must stay on|remains|stays active|must last|lasts|keeps on|remains on|"
     "stays true|remains true|must remain|must hold|has to stay on|should stay on|goes on|continues|stay on|"
     "remain on|holds|keeps going|stays up",
-    "was_true": "was true|was on|was active|was|has been true|has been on|has been",
+    "was_true": "was true|was on|was active|was|has been true|has been on|has been|was used|has been used|was pressed|"
+    "has been pressed|was shown|was visible|was seen|was heard|happened|has happened|occurred|has occurred",
     "anymore": "anymore|any more|any longer|now",
     "no_longer": "is no longer",
     "by_then": "by then|first|in time|in this time|in that time|in meantime|meanwhile|in between",

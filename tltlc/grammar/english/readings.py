@@ -23,6 +23,7 @@ from tltlc.grammar.english.terminals import UNKNOWN, Term, known_terms, terms
 from tltlc.grammar.english.timed_answers import TimedAnswers
 from tltlc.grammar.english.toggles import Toggles
 from tltlc.grammar.english.transitions import Transitions
+from tltlc.grammar.english.two_events import TwoEvents
 from tltlc.grammar.english.two_rules import TwoRules
 from tltlc.grammar.english.windows import Windows
 from tltlc.grammar.mistakes.sentences.states import State
@@ -61,6 +62,7 @@ class Meanings(
     Toggles,
     Alternatives,
     CountsSince,
+    TwoEvents,
     TimedAnswers,
     LaterTimes,
     Windows,
