@@ -30,14 +30,6 @@ class TwoEvents(Rules):
 
     # The time between them.
 
-    def apart_begun(self, duration: Duration, *terms: Term) -> Reading | None:
-        """Return the rule of `at least 2 s between two beginnings of a`."""
-        *numbers, name = terms
-        if [number.text for number in numbers] not in ([], ["2"]):
-            return None
-        begun = f"(begins {name.text})"
-        return Reading((f"avoid {begun} then within {duration.text} {begun}",))
-
     def elapsed_between(self, durations: tuple[Duration, Duration], event: State) -> State | None:
         least, most = (self.elapsed(sign, time, event) for sign, time in zip((">=", "<="), durations, strict=True))
         return None if least is None or most is None else joined([least, most], "and")
