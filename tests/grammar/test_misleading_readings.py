@@ -30,5 +30,5 @@ HELPS = {
 
 @pytest.mark.parametrize("typed", HELPS)
 def test_the_help_has_the_readings(typed: str) -> None:
-    found = errors(SourceFile("a.tltl", f"{HEAD}spec s {{\n{typed}\n}}\n"))
-    assert [(error.help or "").splitlines()[0] for error in found] == [HELPS[typed]]
+    left = errors(SourceFile("a.tltl", f"{HEAD}spec s {{\n{typed}\n}}\n"))
+    assert [(error.help or "").splitlines()[0] for error in left] == [HELPS[typed]]

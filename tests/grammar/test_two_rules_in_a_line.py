@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import pytest
 
 import tltlc
 from tests.grammar.phrases_as_typed import errors, fix
 from tests.grammar.test_english_sentences import HEAD, read
+from tests.grammar.test_windows_in_sentences import is_kept
 from tltlc.core.source import SourceFile
-from tltlc.monitor import Monitor
 
 SAME_HEALTH = "(health >= previous(health) and health <= previous(health))"
 ONE_READING = {
@@ -103,17 +101,6 @@ def test_a_line_has_several_readings(typed: str) -> None:
 @pytest.mark.parametrize("typed", UNCLEAR)
 def test_a_line_that_may_mean_more_has_no_reading(typed: str) -> None:
     assert not read(typed).readings
-
-
-def is_kept(typed: str, index: int, fire: Sequence[bool], spray: Sequence[bool]) -> bool:
-    """Whether a trace keeps the clauses of a reading."""
-    clauses = "\n".join(read(typed).readings[index].clauses)
-    (fspa,) = tltlc.compile_text(f"{HEAD}spec s {{\n{clauses}\n}}\n")
-    monitor = Monitor(fspa)
-    rest = {"boss_dead": False, "coins": 0, "lap": 1, "health": 1, "phase": 0, "state": 0}
-    steps = zip(fire, spray, strict=True)
-    verdicts = [monitor.step({"fire": fires, "spray": sprays, **rest}).verdict for fires, sprays in steps]
-    return "violated" not in verdicts
 
 
 @pytest.mark.parametrize("gap", range(5))

@@ -41,8 +41,8 @@ def with_read_arguments(words: Words, read: ReadCondition) -> Words:
             text = _condition(words[start:end], read) if is_read else ""
             if text:
                 first = words[start]
-                said = words.of([Word(text, "NAME", False, first.start, words[end - 1].end, True)])
-                words = words[:start].followed_by(said).followed_by(words[end:])
+                condition = words.of([Word(text, "NAME", False, first.start, words[end - 1].end, True)])
+                words = words[:start].followed_by(condition).followed_by(words[end:])
                 stop -= end - start - 1
                 end = start + 1
             start, position = end + 1, position + 1

@@ -85,7 +85,10 @@ class TimedAnswers(Rules):
         if settled is not None and state.text.startswith("ends "):
             return Asked(Answer("within", settled, duration.text))  # one step without it is enough
         first, _, second = state.text.partition(" and ")
-        if second in (f"ends {first}", f"not {first}"):  # which are never true at the step of the first
+        if state.level == AND and second in (
+            f"ends {first}",
+            f"not {first}",
+        ):  # which are never true at the step of the first
             return Asked(Answer("now", State(f"{first} and eventually within {duration.text} {second}", AND)), "", True)
         return super().within(state, duration)
 

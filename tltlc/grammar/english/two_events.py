@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Final
-
 from tltlc.grammar.english.events import Event, as_state
+from tltlc.grammar.english.intervals import is_edge
 from tltlc.grammar.english.quantities import Duration
 from tltlc.grammar.english.rules import Reading, Rules, When, are_simple
 from tltlc.grammar.english.terminals import Term
 from tltlc.grammar.mistakes.sentences.states import ATOM, OR, State, joined
-
-_EDGES: Final = ("begins ", "ends ")
 
 
 class TwoEvents(Rules):
@@ -36,7 +33,7 @@ class TwoEvents(Rules):
 
     def elapsed(self, sign: str, duration: Duration, event: State) -> State | None:
         """Return the condition of `at least 2 s since a begins`; a state that lasts has several such times."""
-        if duration.is_steps or not event.text.startswith(_EDGES) or event.level > ATOM:
+        if duration.is_steps or not is_edge(event) or event.level > ATOM:
             return None
         return State(f"time_since({event.text}) {sign} {duration.text}")
 

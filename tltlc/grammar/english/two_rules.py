@@ -48,11 +48,11 @@ class TwoRules(Intervals):
 
     # The time between two events.
 
-    def apart(self, duration: Duration, *found: Term | State) -> _Found:
+    def apart(self, duration: Duration, *events: Term | State) -> _Found:
         """Return the readings of `at least 3 s between a and b`: from a to b, or in either order."""
-        states = [state for state in found if isinstance(state, State)]
+        states = [state for state in events if isinstance(state, State)]
         if len({state.text for state in states}) < 2 or any(state.level > ATOM for state in states):
-            return super().apart(duration, *found)
+            return super().apart(duration, *events)
         first, second = states
         if is_edge(first) and is_edge(second) and _changing(first) == _changing(second):
             is_pause = first.text.startswith("ends ")
@@ -67,9 +67,9 @@ class TwoRules(Intervals):
             readings.append(Reading((from_end,), f"from `{ended.text}` to a later `{following.text}`"))
         return [*readings, Reading((from_first, from_second), "if either may come first")]
 
-    def apart_each(self, duration: Duration, *found: Term | State) -> _Found:
+    def apart_each(self, duration: Duration, *events: Term | State) -> _Found:
         """Return the readings of `at least 3 s between each begins a`, which is about two of its kind."""
-        return self.apart(duration, *found, found[-1])
+        return self.apart(duration, *events, events[-1])
 
     # An answer at this step or the next.
 
