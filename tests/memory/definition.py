@@ -263,7 +263,9 @@ class Definition(Names):
     def _recalled(self, name: str, parts: list[Expr], i: int, scope: Scope) -> float:
         of, so_far = parts[0], range(i + 1)
         if name == "previous":
-            return self.number(of, max(0, i - 1), scope)
+            assert not parts[1:] or isinstance(parts[1], NumberExpr)
+            back = self._steps(parts[1]) if parts[1:] else 1  # type: ignore[arg-type]
+            return self.number(of, max(0, i - back), scope)
         if name == "initial":
             return self.number(of, 0, scope)
         if name in ("highest", "lowest"):

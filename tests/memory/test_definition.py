@@ -235,6 +235,14 @@ def test_a_sample_with_two_exclusive_atoms_changes_no_register() -> None:
     assert monitor.registers == before
 
 
+def test_a_number_so_long_ago_is_that_of_the_first_sample_until_there_is_one() -> None:
+    for length in ("3 steps", "0.3 s", "0.21 s"):
+        (fspa,) = compile_text(f"clock 10 Hz signal hp in [0, 9] spec s = G (hp >= previous(hp, {length}) - 2)")
+        monitor = Monitor(fspa)
+        verdicts = [monitor.step({"hp": hp}).verdict for hp in (9, 8, 8, 7, 6, 6, 5, 3)]
+        assert verdicts == ["holding"] * 7 + ["violated"], length
+
+
 def test_previous_values_and_previous_truth_of_one_name_are_kept_apart() -> None:
     (fspa,) = compile_text(f"{BOOLS} spec s = G (previous(p) implies previously p)")
     monitor = Monitor(fspa)

@@ -143,6 +143,10 @@ class Texts:
         if random.random() < 0.2:
             function = random.choice(("value_at", "highest_since", "lowest_since"))
             return f"{function}({self._plain(depth - 1)}, {self.past(depth - 1)})"
+        if random.random() < 0.1:
+            return (
+                f"previous({self._plain(depth - 1)}, {random.choice(('1 steps', '2 steps', '5 steps', self._time()))})"
+            )
         return f"{random.choice(('previous', 'initial', 'highest', 'lowest'))}({self._plain(depth - 1)})"
 
 

@@ -81,16 +81,16 @@ def test_a_predicate_of_entities_may_still_be_declared() -> None:
 
 
 @pytest.mark.parametrize(
-    ("call", "text"),
+    ("call", "code", "text"),
     [
-        ("previous(x, 0.2 s)", "for 2 steps before, write `previous(previous(x))`"),
-        ("previous(x, 3)", "write `previous(previous(previous(x)))`"),
-        ("previous(x, 2 steps)", "write `previous(previous(x))`"),
-        ("previous(x, 20 s)", "no short clause says what `x` was 20 s before"),
-        ("previous(x, a)", "write `previous(x)`"),
+        ("previous(x, 3)", "TLT0210", "write `previous(x, 3 steps)`"),
+        ("previous(x, a)", "TLT0210", "write e.g. `previous(x, 1 s)`, or `previous(x, 3 steps)`"),
+        ("previous(x, 20 s)", "TLT0303", "supply the value that `x` had 20 s ago as a signal"),
+        ("previous(x, 0 steps)", "TLT0303", "write `x` for the value at this step"),
+        ("previous(x, 20 m)", "TLT0312", "write e.g. `20 steps` or `2 s`"),
     ],
 )
-def test_an_earlier_value_keeps_its_time(call: str, text: str) -> None:
+def test_how_long_ago_a_value_is_must_be_some_steps(call: str, code: str, text: str) -> None:
     error = first_error(f"{HEAD}spec s {{ keep x >= {call} - 5 }}")
-    assert error.code == "TLT0210"
+    assert error.code == code
     assert text in (error.help or "")

@@ -77,6 +77,8 @@ def value_words(register: Register, event: str) -> str:
     ``event`` says when it was taken: "dash last began"; it is empty if the kind says so.
     """
     arguments = split_name(register.name)[1]
+    if register.kind == "previous" and arguments[1:]:
+        return f"the {arguments[0]} {arguments[1]} before"
     value = ", ".join(arguments[:-1] if event else arguments)
     return VALUES[register.kind].format(value, event)
 

@@ -54,7 +54,8 @@ FUNCTIONS: Final = {
         "The time for which p has held since the last sample with q, which counts, too, or since the first sample.",
     ),
     "previous": PastWord(
-        ("previous(x)",), "The value of x at the sample before; at the first sample, its value there."
+        ("previous(x)", "previous(x, T)"),
+        "The value of x at the sample before, or a time T ago; as long as there is no such sample, that of the first.",
     ),
     "initial": PastWord(("initial(x)",), "The value of x at the first sample."),
     "highest": PastWord(("highest(x)",), "The greatest value of x so far."),
@@ -78,6 +79,9 @@ SINCE: Final = {
     "lowest": "lowest_since",
 }
 """The functions that begin anew at an event, by those that begin at the first sample."""
+
+MOST_STEPS_BACK: Final = 128
+"""The most steps that ``previous(x, T)`` looks back: a monitor keeps a number for each."""
 
 OF_EVENTS: Final = ("times_since", "total_time_since", "highest_since", "lowest_since", "value_at")
 """The functions whose second argument is a formula: the event since which, or the step at which, they ask."""

@@ -94,6 +94,7 @@ class Context:
     - ``bounds`` has the bounds resolved so far, and ``bound_of`` the latest bound of each bounded
       operator.
     - ``expansions`` counts the expansions of lets and quantifiers so far.
+    - ``limit_text`` is the limit of the current spec as written, if it is a time, for advice.
     - ``unfolded`` has the names of the specs in which no timer replaces a bound.
 
     The identity of an object is its ``id()``. A key of ``instances`` or ``values`` contains the
@@ -115,6 +116,7 @@ class Context:
         "expansions",
         "instances",
         "levels",
+        "limit_text",
         "log",
         "params",
         "recalls",
@@ -138,6 +140,7 @@ class Context:
         self.atoms: dict[str, Atom] = {}
         self.registers: dict[str, RegisterDraft] = {}
         self.recalls = self.levels = 0
+        self.limit_text = ""
         self.values_of_signals: dict[str, str] = {}
         self.bounds: list[Bound] = []
         self.bound_of: dict[Formula, Bound] = {}

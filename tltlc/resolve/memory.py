@@ -14,7 +14,7 @@ from tltlc.core.record import replace
 from tltlc.core.source import Span
 from tltlc.diagnostics.diagnostic import Label
 from tltlc.expression.tree import Before, Condition, Expression, Op, SignalValue, When, depth
-from tltlc.grammar.past_words import FUNCTIONS, OF_EVENTS
+from tltlc.grammar.past_words import FUNCTIONS, MOST_STEPS_BACK, OF_EVENTS
 from tltlc.grammar.tree import BinaryExpr, CallExpr, Expr, GroupExpr, NumberExpr, Unary
 from tltlc.io.limits import ARITHMETIC
 from tltlc.logic import formula as logic
@@ -30,7 +30,6 @@ from tltlc.resolve.registers import RegisterDraft
 from tltlc.resolve.scope import MEMORY_FUNCTIONS
 from tltlc.resolve.spec import Signal
 from tltlc.resolve.timers import TimerAtoms
-from tltlc.resolve.unknown_functions import earlier_value_help
 from tltlc.resolve.values import CLOSED, Env, Quantity, Recall, number_text
 
 PAST: Final = ("once", "historically", "previously", "begins", "ends")
@@ -210,7 +209,7 @@ def recall(expr: CallExpr, env: Env, level: int) -> Quantity:
     """
     is_of_formula = expr.name in _OF_FORMULAS
     least = 2 if expr.name in (*OF_EVENTS, "times_within") else 1
-    most = least + is_of_formula
+    most = least + (is_of_formula or expr.name == "previous")
     if not least <= len(expr.arguments) <= most or any(argument.name for argument in expr.arguments):
         form = " or ".join(f"`{form}`" for form in FUNCTIONS[expr.name].forms)
         first = "formula" if is_of_formula else "number"
@@ -220,8 +219,7 @@ def recall(expr: CallExpr, env: Env, level: int) -> Quantity:
             title = f"`{expr.name}` takes one {first}"
         else:
             title = f"`{expr.name}` takes {'two formulas' if is_of_formula else 'a number and a formula'}"
-        advice = earlier_value_help(expr, env) or f"write {form}"
-        raise problem("TLT0210", title, env.scope.source, expr.span, advice=advice)
+        raise problem("TLT0210", title, env.scope.source, expr.span, advice=f"write {form}")
     if env.context.recalls >= _MOST_NESTED:
         title = f"functions of the past stand more than {_MOST_NESTED} deep inside each other"
         advice = "let the game compute the value and supply it as a signal"
@@ -355,7 +353,10 @@ def _of_number(expr: CallExpr, env: Env, level: int) -> Quantity:
     if value.depth > ARITHMETIC.depth:
         return value
     _check_length(len(value.text), argument, env)
+    back = _steps_back(expr, env) if expr.arguments[1:] and event is None else None
     texts = (value.text,) if event is None else (value.text, _event_text(expr, event, env))
+    if back is not None:
+        texts = (value.text, back[0])
     name = f"{expr.name}({', '.join(texts)})"
     call = (expr.name, texts) if value.is_bool else None
     result = replace(value, expression=SignalValue(name), text=name, binding=CLOSED, depth=1, call=call)
@@ -370,6 +371,11 @@ def _of_number(expr: CallExpr, env: Env, level: int) -> Quantity:
         kept = f"last value of {value.operand_text(CLOSED)}"
         _register(registers.last(kept, now, low, high, _inside(0.0, low, high)), expr, env)
         before = Before(kept)
+        for steps in range(1, back[1] if back is not None else 1):
+            earlier = f"{value.operand_text(CLOSED)} {steps} steps before"
+            draft = registers.last(earlier, registers.at_first(now, before), low, high, _inside(0.0, low, high))
+            _register(draft, expr, env)
+            before = Before(earlier)
     updates: dict[str, Expression] = {
         "previous": before,
         "initial": before,
@@ -386,6 +392,33 @@ def _of_number(expr: CallExpr, env: Env, level: int) -> Quantity:
     draft = RegisterDraft(name, kind, unit, low, high, _inside(0.0, low, high), update)  # type: ignore[arg-type]
     _register(draft, expr, env)
     return result
+
+
+def _steps_back(expr: CallExpr, env: Env) -> tuple[str, int]:
+    """Return the time of ``previous(x, T)`` as a text, and how many samples it is.
+
+    Raises ResolutionError: TLT0210 if T is no number with a unit, TLT0312 or TLT0313 if it is no time or number of
+    steps here, TLT0303 if it is no step, or more steps than a monitor remembers.
+    """
+    argument = expr.arguments[1].value
+    while isinstance(argument, GroupExpr):
+        argument = argument.inner
+    if not isinstance(argument, NumberExpr) or argument.unit is None:
+        title = "`previous` takes a number, and how long ago"
+        of, number = (env.scope.source.slice(argument.value.span) for argument in expr.arguments)
+        known = f"write `previous({of}, {number} steps)`" if isinstance(argument, NumberExpr) else ""
+        advice = known or f"write e.g. `previous({of}, 1 s)`, or `previous({of}, 3 steps)`"
+        raise problem("TLT0210", title, env.scope.source, expr.arguments[1].value.span, advice=advice)
+    steps = samples(argument, env)
+    text = f"{number_text(argument.value)} {argument.unit}"
+    if not 0 < steps <= MOST_STEPS_BACK:
+        of = env.scope.source.slice(expr.arguments[0].value.span)
+        title = f"`previous` looks back 1 to {MOST_STEPS_BACK} steps, and this is {steps}"
+        advice = f"supply the value that `{of}` had {text} ago as a signal: a monitor keeps a number for each step"
+        if not steps:
+            advice = f"write `{of}` for the value at this step"
+        raise problem("TLT0303", title, env.scope.source, argument.span, advice=advice)
+    return text, steps
 
 
 def _end(value: float) -> float | None:

@@ -78,14 +78,18 @@ def check_closed(value: Quantity, expr: Expr, env: Env) -> Quantity:
         return value
     assert value.recall is not None, "an open quantity"
     stops = f"{'counting' if value.recall.is_count else 'the time'} stops at the maximum"
-    raise _open_error(value, expr, env, f"write the greatest value that matters, e.g. `{_closed_text(value)}`: {stops}")
+    written = f"`{_closed_text(value, env)}`"
+    advice = f"write the greatest value that matters, e.g. {written}: {stops}"
+    if not value.recall.is_count and env.context.limit_text:
+        advice = f"write {written}, with the limit of the spec, or a longer time: {stops}"
+    raise _open_error(value, expr, env, advice)
 
 
 def check_closed_pair(left: Quantity, right: Quantity, expr: BinaryExpr, env: Env) -> None:
     """Raise ResolutionError (TLT0321) if both sides of a comparison are recalled and have no maximum."""
     if env.symbolic or not (is_open(left) and is_open(right)):
         return
-    text = f"{_closed_text(left)} {expr.op} {_closed_text(right)}"
+    text = f"{_closed_text(left, env)} {expr.op} {_closed_text(right, env)}"
     advice = (
         f"write the greatest value that one play can reach on both sides, e.g. `{text}`: from there on, both stay at "
         "it, and no difference is seen"
@@ -93,9 +97,9 @@ def check_closed_pair(left: Quantity, right: Quantity, expr: BinaryExpr, env: En
     raise _open_error(left, expr.left, env, advice)
 
 
-def _closed_text(value: Quantity) -> str:
-    """Return the text of a recalled quantity with an example of a maximum."""
-    example = "10" if value.recall is not None and value.recall.is_count else "60 s"
+def _closed_text(value: Quantity, env: Env) -> str:
+    """Return the text of a recalled quantity with a maximum: the limit of the spec for a time, else an example."""
+    example = "10" if value.recall is not None and value.recall.is_count else env.context.limit_text or "60 s"
     return f"{value.text[:-1]}, {example})"
 
 

@@ -52,6 +52,7 @@ def resolve_spec(declaration: SpecDecl, groups: tuple[tuple[str, ...], ...], env
     metadata: dict[str, Clause] = {}
     tags: dict[str, None] = {}
     complete = True
+    env.context.limit_text = _time_limit(declaration, source)
     for clause in declaration.clauses:
         try:
             if clause.kind in _READERS:
@@ -275,6 +276,14 @@ def _store_metadata(clause: Clause, metadata: dict[str, Clause], env: Env) -> No
             related=(Label(source, metadata[clause.kind].span, "the first one"),),
         )
     metadata[clause.kind] = clause
+
+
+def _time_limit(declaration: SpecDecl, source: SourceFile) -> str:
+    """Return the limit of a spec as it is written, if it is a time; else ""."""
+    for clause in declaration.clauses:
+        if clause.kind == "limit" and isinstance(clause.value, NumberExpr) and clause.value.unit not in (None, "steps"):
+            return source.slice(clause.value.span)
+    return ""
 
 
 def _limit(clause: Clause | None, env: Env) -> int | None:

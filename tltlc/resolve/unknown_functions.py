@@ -6,16 +6,13 @@ from typing import Final
 
 from tltlc.diagnostics.diagnostic import Fix, replacement_fix
 from tltlc.grammar.past_words import FUNCTIONS, PastWord
-from tltlc.grammar.tree import CallExpr, Expr, GroupExpr, NameExpr, NumberExpr, SignalDecl
-from tltlc.resolve import units
+from tltlc.grammar.tree import CallExpr, Expr, GroupExpr, NameExpr, SignalDecl
 from tltlc.resolve.values import Env
 
 _CHANGES: Final = ("changed", "changes", "change", "has_changed", "did_change")
 _DIFFERENCES: Final = ("delta", "diff", "difference")
 _LIKE: Final = 0.6
 """How like a name must be to that of a function, from 0 to 1."""
-_MOST_STEPS: Final = 10
-"""The most steps back for which a help writes `previous` in each other."""
 _AGGREGATES: Final = frozenset("mean average avg median sum integral std variance rms moving rolling".split())
 """Words in the names of functions that put many values together, as the language cannot."""
 _WINDOWS: Final = frozenset("within window last past recent over sliding".split())
@@ -36,7 +33,7 @@ def function_help(call: CallExpr, env: Env) -> tuple[str, tuple[Fix, ...]] | Non
     if written is not None:
         return f"write `{written}`", (replacement_fix(env.scope.source, call.span, written),)
     if _is_of_window(call):
-        return _window_help(call), ()
+        return _window_help(call, env), ()
     near = _near(call.name)
     if near:
         return "; or ".join(f"`{word.forms[0]}` may be meant: {word.meaning.rstrip('.')}" for word in near), ()
@@ -50,7 +47,7 @@ def _is_of_window(call: CallExpr) -> bool:
     return bool(words & _AGGREGATES or (words & _WINDOWS and words & _PUT_TOGETHER))
 
 
-def _window_help(call: CallExpr) -> str:
+def _window_help(call: CallExpr, env: Env) -> str:
     argument, name = call.arguments[0].value, call.name.lower()
     of = argument.name if isinstance(argument, NameExpr) else ""
     signal = f"{of}_{name}" if of else name
@@ -62,37 +59,18 @@ def _window_help(call: CallExpr) -> str:
         )
     else:
         limit = "no function puts the values of several steps together (`highest_since(x, q)` is the greatest since q)"
-    return (
-        f"{limit}: let the game record that number as a signal, such as "
-        f"`signal {signal}{': time in [0 s, 60 s]' if is_time else ' in [0, 100]'}`, and compare that"
-    )
+    range_ = ": time in [0 s, 60 s]" if is_time else _range_text(of, env) or " in [0, 100]"
+    return f"{limit}: let the game record that number as a signal, such as `signal {signal}{range_}`, and compare that"
 
 
-def earlier_value_help(call: CallExpr, env: Env) -> str | None:
-    """Return the help for ``previous(x, 1 s)``; None for other calls."""
-    if call.name != "previous" or len(call.arguments) != 2:
-        return None
-    of, time = (env.scope.source.slice(argument.value.span) for argument in call.arguments)
-    steps = _steps_of(call.arguments[1].value, env)
-    if steps is None:
-        return None
-    one = f"`previous({of})` is the value one step before"
-    if steps > _MOST_STEPS:
-        return f"{one}, and no short clause says what `{of}` was {time} before: let the game supply it as a signal"
-    return f"{one}: for {steps} steps before, write `{'previous(' * steps}{of}{')' * steps}`"
-
-
-def _steps_of(time: Expr, env: Env) -> int | None:
-    """Return how many steps a time or a number is; None if that is not known, or no step."""
-    if not isinstance(time, NumberExpr):
-        return None
-    steps = time.value
-    if time.unit not in (None, "step", "steps"):
-        in_si, period = units.in_si(time.value, time.unit), env.context.clock_s
-        if in_si is None or in_si[1] != units.TYPES["time"] or not period or env.context.clock_varies:
-            return None
-        steps = in_si[0] / period
-    return round(steps) if round(steps) >= 1 and abs(steps - round(steps)) < 1e-6 else None
+def _range_text(name: str, env: Env) -> str:
+    """Return the type and the range of the signal with a name as they are declared; "" if it is no such signal."""
+    binding = env.scope.names.get(name)
+    declaration = binding.declaration if binding is not None else None
+    if not isinstance(declaration, SignalDecl) or declaration.interval is None:
+        return ""
+    type_ = f": {declaration.type}" if declaration.type else ""
+    return f"{type_} {env.scope.source.slice(declaration.interval.span)}"
 
 
 def _is_value(argument: Expr, env: Env) -> bool:
