@@ -16,6 +16,7 @@ from tltlc.automaton.remembered_formulas import (
     waited_for,
 )
 from tltlc.automaton.value_phrases import VALUES, value_words, window_text
+from tltlc.core.names import split_name
 from tltlc.expression.tree import Before
 from tltlc.logic.formula import TRUE, Formula
 from tltlc.resolve.spec import Register, RegisterKind
@@ -40,6 +41,20 @@ _TEXTS: Final[Mapping[RegisterKind, str]] = {
     "elapsed": "the time since the first step",
 }
 """What is said of a register, by its kind; the numbers stand for the formulas that it is about."""
+_AT_START: Final[Mapping[RegisterKind, str]] = {
+    "previously": "not before the first step",
+    "previous": "at the first step, the one of that step",
+    "times": "steps in a row count once",
+    "times_since": "before the first of these, since the first step; steps in a row count once",
+    "times_within": "steps in a row count once",
+    "time_since": "over every limit before the first",
+    "time_holding": "0 s at the first step of it",
+    "total_time_since": "before the first of these, since the first step",
+    "highest_since": "before the first of these, since the first step",
+    "lowest_since": "before the first of these, since the first step",
+    "value_at": "before that, the one of the first step",
+}
+"""What a reader may expect to be otherwise, mostly at the first step or before the first event."""
 _ALWAYS: Final[Mapping[RegisterKind, str]] = {
     "waiting": "how long {1} has been due",
     "due": "whether {1} is due",
@@ -54,6 +69,13 @@ def register_phrases(fspa: Fspa) -> dict[str, str]:
     """
     speaker, registers = Speaker(fspa), {register.name: register for register in fspa.registers}
     return {name: _phrase(register, registers, speaker) or name for name, register in registers.items()}
+
+
+def start_phrase(register: Register) -> str:
+    """Return what a register is where a reader may expect something else; "" if nothing needs to be said."""
+    if register.kind == "previous" and split_name(register.name)[1][1:]:
+        return "before that is reached, the one of the first step"
+    return _AT_START.get(register.kind, "")
 
 
 def _phrase(register: Register, registers: Mapping[str, Register], speaker: Speaker) -> str | None:

@@ -285,9 +285,9 @@ def test_a_long_chain_is_a_numbered_list_and_no_sentence() -> None:
         "s\n=\n\nWhat it asks for\n  Reach, in this order:\n"
         "    1. a\n    2. b within 5 s after a\n    3. c within 3 s after b\n    4. d within 2 s after c\n    5. e\n\n"
         "What it remembers\n"
-        "  - the time since a\n"
+        "  - the time since a (over every limit before the first)\n"
         "  - the time since a at an earlier step\n"
-        "  - the time since b in time\n"
+        "  - the time since b in time (over every limit before the first)\n"
     )
 
 
@@ -312,3 +312,35 @@ def test_a_large_spec_is_explained_without_the_table_of_its_states() -> None:
     assert explanation.succeed is not None
     assert explanation.fail is not None
     assert len(text(explanation).splitlines()) < 200
+
+
+@pytest.mark.parametrize(
+    ("clause", "said"),
+    [
+        ("keep begins a implies b", "whether a held at the step before (not before the first step)"),
+        ("keep n >= previous(n)", "the previous n (at the first step, the one of that step)"),
+        (
+            "keep n >= previous(n, 3 steps)",
+            "the n 3 steps before (before that is reached, the one of the first step)",
+        ),
+        ("keep a implies time_since(b) <= 2 s", "the time since b (over every limit before the first)"),
+        (
+            "keep times_since(a, b) <= 2",
+            "how often a has begun since b "
+            "(before the first of these, since the first step; steps in a row count once)",
+        ),
+        ("keep n >= value_at(n, b)", "the n when b last held (before that, the one of the first step)"),
+    ],
+)
+def test_what_is_remembered_is_said_for_the_first_steps_too(clause: str, said: str) -> None:
+    (fspa,) = compiler.compile_text(
+        f"clock 10 Hz signal a: bool signal b: bool signal n in [0, 9] spec s {{ {clause} }}"
+    )
+    assert f"- {said}" in " ".join(text(explain(fspa)).split())
+
+
+def test_a_rule_with_answers_says_that_what_is_due_at_the_end_is_missed() -> None:
+    said = "What is still due at the last step counts as missed: its verdict is `pending`."
+    for clause, is_due in (("a implies eventually within 2 s b", True), ("a implies always for 2 s b", False)):
+        (fspa,) = compiler.compile_text(f"clock 10 Hz signal a: bool signal b: bool spec s {{ keep {clause} }}")
+        assert (said in explain(fspa).ending) == is_due

@@ -28,7 +28,9 @@ def ending(fspa: Fspa) -> str:
         *(["with failure as soon as the spec is broken for good"] if can_break else []),
     ]
     sooner = f" It ends before that {', and '.join(early)}." if early else ""
-    return f"An episode goes on {until}, and is a success if {met} then.{sooner}"
+    is_due = initial == "holding" and "pending" in verdicts
+    due = " What is still due at the last step counts as missed: its verdict is `pending`." if is_due else ""
+    return f"An episode goes on {until}, and is a success if {met} then.{sooner}{due}"
 
 
 def limit_text(steps: int | None, seconds: float | None) -> str:

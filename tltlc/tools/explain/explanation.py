@@ -11,7 +11,7 @@ from typing import Final
 from tltlc.automaton.fspa import Fspa, Guard, Implicant, Text
 from tltlc.automaton.memory import given_atoms
 from tltlc.automaton.memory_phrases import Speaker, spoken
-from tltlc.automaton.register_phrases import register_phrases
+from tltlc.automaton.register_phrases import register_phrases, start_phrase
 from tltlc.automaton.text import formula_text, label_range_text, label_text, times_of
 from tltlc.automaton.work import OutOfWork
 from tltlc.backends.drawing.folding import fold_runs
@@ -111,12 +111,14 @@ class ExampleTrace:
 class Remembered:
     """A value of the trace so far that the monitor keeps: the ``name`` of its register, and ``words`` for it.
 
-    ``maximum`` is where a count or a time stops, in ``unit``: ``steps``, an SI unit, or empty for a
-    plain number. It is None for values that do not stop.
+    ``start`` says what it is at the first step, before its event, or otherwise where a reader may expect
+    something else; it is empty if nothing needs to be said. ``maximum`` is where a count or a time stops,
+    in ``unit``: ``steps``, an SI unit, or empty for a plain number. It is None for values that do not stop.
     """
 
     name: str
     words: str
+    start: str
     unit: str
     maximum: float | None
 
@@ -194,6 +196,7 @@ def _memory(fspa: Fspa) -> tuple[Remembered, ...]:
         Remembered(
             register.name,
             words[register.name],
+            start_phrase(register),
             register.unit,
             register.high if register.kind in SATURATING else None,
         )

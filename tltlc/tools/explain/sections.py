@@ -94,7 +94,8 @@ def _requirements(explanation: Explanation) -> tuple[Section, ...]:
 
 
 def _memory(explanation: Explanation) -> tuple[Section, ...]:
-    items = tuple(dict.fromkeys(value.words for value in explanation.memory))
+    texts = (f"{value.words} ({value.start})" if value.start else value.words for value in explanation.memory)
+    items = tuple(dict.fromkeys(texts))
     return (Section("What it remembers", (SectionList("", items),)),) if items else ()
 
 

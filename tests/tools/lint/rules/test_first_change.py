@@ -6,7 +6,7 @@ import pytest
 
 from tests.tools.lint.helpers import RANGES, accepted_traces, block, codes, findings_in
 
-BEFORE = f"clock 1 Hz\n{RANGES}signal n: int in [0, 9]\n"
+BEFORE = f"clock 1 Hz\n{RANGES}signal n: int in [0, 9]\nsignal mode: (walk, run)\n"
 
 
 @pytest.mark.parametrize(
@@ -18,6 +18,13 @@ BEFORE = f"clock 1 Hz\n{RANGES}signal n: int in [0, 9]\n"
         ("require always (a implies x < previous(x))", "and previously true"),
         ("keep a implies b and x > previous(x)", "and previously true"),
         ("keep a implies (b implies x > previous(x))", "and previously true"),
+        ("keep a implies n == previous(n) - 1", "keep a and previously true implies n == previous(n) - 1"),
+        ("keep a implies n >= previous(n) + 2", "keep a and previously true implies n >= previous(n) + 2"),
+        ("keep a implies previous(n) - 2 > n", "keep a and previously true implies previous(n) - 2 > n"),
+        (
+            "keep begins mode is run implies previously mode is walk",
+            "keep begins mode is run and previously true implies previously mode is walk",
+        ),
     ],
 )
 def test_a_change_that_a_condition_asks_for_gets_a_note(clause: str, offered: str) -> None:
@@ -46,6 +53,10 @@ def test_only_the_step_before_the_first_is_not_asked_for() -> None:
         "keep a and previously a implies x > previous(x)",
         "keep x > previous(x) implies a",
         "keep a implies x > previous(y)",
+        "keep a implies x >= previous(x) - 1",
+        "keep a implies n < previous(n) + 2",
+        "keep a implies previously b",
+        "keep a implies previously mode is walk",
         "keep a implies weak_next x > previous(x)",
     ],
 )

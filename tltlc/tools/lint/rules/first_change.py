@@ -1,19 +1,27 @@
-"""TLT0472: `keep a implies x > previous(x)`, which a first step with a breaks."""
+"""TLT0472: `keep a implies x > previous(x)` and its like, which a first step with a breaks."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping
+from operator import eq, ge, gt, le, lt, ne
 from typing import Final
 
 from tltlc.diagnostics.diagnostic import Label
 from tltlc.grammar.past_words import FUNCTIONS
-from tltlc.grammar.tree import BinaryExpr, CallExpr, Expr, Unary
+from tltlc.grammar.tree import BinaryExpr, CallExpr, Expr, IsExpr, NumberExpr, Unary
 from tltlc.grammar.walk import parts
 from tltlc.tools.lint.asked_results import AskedResult, asked_results
 from tltlc.tools.lint.file_view import FileView, ScopedExpression, operand_text, without_brackets
 from tltlc.tools.lint.rule import LintRule, RuleFinding
 
-_STRICT: Final = ("<", ">", "!=")
+_COMPARED: Final[Mapping[str, Callable[[float, float], bool]]] = {
+    "<": lt,
+    ">": gt,
+    "<=": le,
+    ">=": ge,
+    "==": eq,
+    "!=": ne,
+}
 _LATER: Final = ("ends", "previously")
 """What no first step has."""
 
@@ -27,27 +35,51 @@ def check(view: FileView) -> Iterator[RuleFinding]:
         for clause, value in spec.clauses("keep", "require"):
             rule = without_brackets(value.tree)
             for asked in asked_results(clause, value):
-                if not asked.steps and _is_change(asked.part) and not _has_step_before(asked.condition.tree):
+                condition = asked.condition.tree
+                if not asked.steps and _is_change(asked.part, condition) and not _has_step_before(condition):
                     is_whole = (
                         isinstance(rule, BinaryExpr)
-                        and without_brackets(rule.left) is asked.condition.tree
+                        and without_brackets(rule.left) is condition
                         and without_brackets(rule.right) is without_brackets(asked.part.tree)
                     )
                     yield _finding(asked, "keep " if clause.kind == "keep" and is_whole else "")
 
 
-def _is_change(answer: ScopedExpression) -> bool:
-    """Whether an answer is `x > previous(x)`, or the same with `<` or `!=`."""
+def _is_change(answer: ScopedExpression, condition: Expr) -> bool:
+    """Whether an answer is false at the first step: `x > previous(x)`, `x == previous(x) - 1`, or a turn of an enum."""
     tree = without_brackets(answer.tree)
-    if not isinstance(tree, BinaryExpr) or tree.op not in _STRICT:
+    if isinstance(tree, Unary) and tree.op == "previously":
+        before = without_brackets(tree.operand)
+        return isinstance(before, IsExpr) and any(
+            isinstance(turned, IsExpr) and _text(answer, turned.operand) == _text(answer, before.operand)
+            for part in parts(condition)
+            if isinstance(part, Unary) and part.op == "begins"
+            for turned in [without_brackets(part.operand)]
+        )
+    if not isinstance(tree, BinaryExpr) or tree.op not in _COMPARED:
         return False
     sides = [without_brackets(tree.left), without_brackets(tree.right)]
-    return any(
-        isinstance(call, CallExpr)
-        and call.name == "previous"
-        and answer.with_tree(call.arguments[0].value).text == answer.with_tree(other).text
-        for call, other in (sides, sides[::-1])
-    )
+    for one, other in (sides, sides[::-1]):
+        call, step = _moved(other)
+        if not isinstance(call, CallExpr) or call.name != "previous":
+            continue
+        if _text(answer, call.arguments[0].value) == _text(answer, one):
+            return not _COMPARED[tree.op](*((0.0, step) if one is sides[0] else (step, 0.0)))
+    return False
+
+
+def _moved(side: Expr) -> tuple[Expr, float]:
+    """Return y and the number of `y + 2`, `y - 2` or `y`."""
+    if not isinstance(side, BinaryExpr) or side.op not in ("+", "-"):
+        return side, 0.0
+    step = without_brackets(side.right)
+    if not isinstance(step, NumberExpr):
+        return side, 0.0
+    return without_brackets(side.left), step.value if side.op == "+" else -step.value
+
+
+def _text(part: ScopedExpression, tree: Expr) -> str:
+    return part.with_tree(without_brackets(tree)).text
 
 
 def _has_step_before(condition: Expr) -> bool:

@@ -1,0 +1,40 @@
+"""TLT0473: `a until eventually within 3 s b`, which ends up to 3 s before b."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from tltlc.diagnostics.diagnostic import Label
+from tltlc.grammar.tree import BinaryExpr, Unary
+from tltlc.tools.lint.file_view import FileView, ScopedExpression, operand_text, without_brackets
+from tltlc.tools.lint.rule import LintRule, RuleFinding
+
+
+def check(view: FileView) -> Iterator[RuleFinding]:
+    """Yield a finding for each `until` and `weak_until` whose right side is `eventually b`.
+
+    The right side holds from the step on from which b comes in time, so the left side need not hold until b.
+    """
+    for spec in view.specs:
+        for part in (part for formula in spec.formulas() for part in formula.parts()):
+            if isinstance(part.tree, BinaryExpr) and part.tree.op in ("U", "W"):
+                end = without_brackets(part.tree.right)
+                if isinstance(end, Unary) and end.op == "F":
+                    yield _finding(part, part.with_tree(part.tree.left), part.with_tree(end))
+
+
+def _finding(until: ScopedExpression, first: ScopedExpression, end: ScopedExpression) -> RuleFinding:
+    assert isinstance(until.tree, BinaryExpr) and isinstance(end.tree, Unary)
+    goal, word = end.with_tree(end.tree.operand), until.source.slice(until.tree.op_span)
+    label = Label(end.source, end.tree.span, f"this holds before `{goal.text}` does, and ends the `{word}`")
+    meant = f"{operand_text(first)} {word} {operand_text(goal)}"
+    if end.tree.bound is not None:
+        meant = f"({meant}) and {end.text}"
+    help_ = (
+        f"if `{first.text}` must hold until `{goal.text}`, write `{meant}`; else allow this with the comment "
+        "`// tltlc: allow TLT0473`"
+    )
+    return RuleFinding(f"this `{word}` may end before `{goal.text}`", (label,), help_)
+
+
+RULE = LintRule("TLT0473", "warning", check)
