@@ -442,7 +442,7 @@ ONE_READING = {
     "when phase is menu\nthen coins is 3 or 4": ["keep phase is menu implies coins == 3 or coins == 4"],
     "avoid |coins - health| > 60": ["avoid abs(coins - health) > 60"],
     "coins never above the highest health so far": ["keep coins <= highest(health)"],
-    "fire only when coins higher than 0.2 s ago": ["keep fire implies coins > previous(previous(coins))"],
+    "fire only when coins higher than 0.2 s ago": ["keep fire implies coins > previous(coins, 0.2 s)"],
     "coins only when phase is shift": ["keep coins > 0 implies phase is shift"],
     "when fire, no coins": ["keep fire implies coins == 0"],
     "when boss_dead, more coins than at the start": ["keep boss_dead implies coins > initial(coins)"],
@@ -1054,7 +1054,7 @@ NO_READING = (
 UNSAYABLE = {
     "fire only after at least 9 steps with spray": "steps in a row once",
     "every third fire must be spray": "no clause can say what holds at each third `fire`",
-    "at some point health is 30 higher than 2 s ago": "no clause can say what `health` was 2 s ago",
+    "at some point health is 30 higher than 20 s ago": "no clause can say what `health` was 20 s ago",
     "health never falls by more than 5 in 30 s": "no clause can say what `health` was 30 s ago",
     "when fire, spray after at least 1 s and at most 90 s": "a clause that looks 90 s ahead has too many states",
     "fire between 50 s and 80 s after spray": "a clause that looks 80 s ahead has too many states",

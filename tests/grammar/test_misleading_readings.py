@@ -6,7 +6,9 @@ import pytest
 
 from tests.grammar.phrases_as_typed import errors
 from tests.grammar.test_english_sentences import HEAD
+from tltlc import compile_text
 from tltlc.core.source import SourceFile
+from tltlc.monitor import Monitor
 
 HELPS = {
     "keep begins fire and phase is menu implies not fire before phase is shift": (
@@ -24,6 +26,52 @@ HELPS = {
         "write `keep fire implies spray and eventually within 1 s ends spray`"
     ),
     "keep fire implies once in the last 60 s spray": "write `keep fire implies once within 60 s spray`",
+    "keep fire never twice in a row without spray": "write `keep times_since(fire, spray) <= 1`",
+    "keep fire implies boss_dead at most twice": (
+        "write `keep fire implies times(boss_dead) <= 2` if the count begins with the first step, "
+        "or `keep fire implies times_since(boss_dead, begins fire) <= 2` if each `fire` begins a new count, "
+        "or `keep times((begins boss_dead) and fire) <= 2` if all steps with `fire` count together"
+    ),
+    "keep fire implies spray and boss_dead at most once": (
+        "write `keep fire implies spray` and `keep fire implies times(boss_dead) <= 1` "
+        "if the count begins with the first step, or `keep fire implies spray` and "
+        "`keep fire implies times_since(boss_dead, begins fire) <= 1` if each `fire` begins a new count, "
+        "or `keep fire implies spray` and `keep times((begins boss_dead) and fire) <= 1` "
+        "if all steps with `fire` count together"
+    ),
+    "keep at most 5 fire and lap >= 2": (
+        "write `keep times(fire and lap >= 2) <= 5`, or `keep times(fire) <= 5` and `keep lap >= 2` "
+        "if `lap >= 2` must hold at every step"
+    ),
+    # A time that looks ahead or back.
+    "keep begins fire implies spray for at least 2 s": (
+        "write `keep begins fire implies always for 2 s spray`, or "
+        "`keep begins fire implies time_holding(spray) >= 2 s` if `spray` must have held for so long by then"
+    ),
+    "keep begins fire implies spray for at least 20 steps": (
+        "write `keep begins fire implies always for 20 steps spray`, or "
+        "`keep begins fire implies historically for 20 steps spray` if `spray` must have held for so long by then"
+    ),
+    "whenever spray starts, keep spray for at least 2 s": "write `keep begins spray implies always for 2 s spray`",
+    "keep spray while fire and for 3 s after": "write `keep once within 3 s fire implies spray`",
+    "require not fire until within 3 s spray": (
+        "write `require eventually within 3 s spray` and `require not fire until spray`"
+    ),
+    # Values of the step before, or of some time ago.
+    "keep fire implies coins and lap unchanged": (
+        "write `keep fire and previously fire implies coins == previous(coins) and lap == previous(lap)` "
+        "within each `fire`, or `keep fire implies coins == previous(coins) and lap == previous(lap)` "
+        "also from the step before it begins"
+    ),
+    "keep fire implies health does not fall": (
+        "write `keep fire and previously fire implies health >= previous(health)` within each `fire`, "
+        "or `keep fire implies health >= previous(health)` also from the step before it begins"
+    ),
+    "coins must not drop by more than 3 within 1 s": (
+        "write `keep coins >= previous(coins, 1 s) - 3` "
+        "if `coins` is compared with what it was 1 s before, whatever it was in between"
+    ),
+    "keep coins >= coins 1 s ago - 3": "write `keep coins >= previous(coins, 1 s) - 3`",
     "health is never below 20 for more than 10 s": "write `avoid time_holding(health < 20) > 10 s`",
 }
 
@@ -32,3 +80,15 @@ HELPS = {
 def test_the_help_has_the_readings(typed: str) -> None:
     left = errors(SourceFile("a.tltl", f"{HEAD}spec s {{\n{typed}\n}}\n"))
     assert [(error.help or "").splitlines()[0] for error in left] == [HELPS[typed]]
+
+
+def test_two_events_so_far_apart_are_said_to_be_forbidden() -> None:
+    (error,) = errors(SourceFile("a.tltl", f"{HEAD}spec s {{\nat least 3 s between two begins fire\n}}\n"))
+    note = "3 s after the first is forbidden, too: write 2.9 s if it is allowed"
+    assert (error.help or "").splitlines()[1:] == [note]
+    for time, is_kept in (("3 s", False), ("2.9 s", True)):
+        rule = f"avoid (begins fire) then within {time} (begins fire)"
+        (fspa,) = compile_text(f"clock 10 Hz\nsignal fire: bool\nspec s {{ {rule} }}")
+        monitor = Monitor(fspa)
+        verdicts = [monitor.step({"fire": step in (1, 31)}).verdict for step in range(40)]
+        assert ("violated" not in verdicts) == is_kept

@@ -36,7 +36,6 @@ ONE = {
         "keep begins (times_since(fire, ends spray) >= 3) implies always for 6 s boss_dead"
     ],
     "keep spray implies always in the last 10 s health <= 5": ["keep spray implies time_holding(health <= 5) >= 10 s"],
-    "keep fire implies health does not fall": ["keep fire implies health >= previous(health)"],
     "when health falls below 20, fire within 1 s and for at least 4 s": [
         "keep begins (health < 20) implies eventually within 1 s always for 4 s fire"
     ],

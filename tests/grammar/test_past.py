@@ -47,7 +47,6 @@ def _error(clause: str) -> tuple[str, Diagnostic]:
         ("reach hidden for 3 s", "reach time_holding(hidden) >= 3 s"),
         ("reach near(e) and hidden for 2 seconds", "reach time_holding((near(e) and hidden)) >= 2 s"),
         ("reach for 3 s hidden", "reach time_holding(hidden) >= 3 s"),
-        ("keep alarm implies seen at most 3 times", "keep alarm implies times(seen) <= 3"),
         ("reach hidden and near(e) at least twice", "reach hidden and times(near(e)) >= 2"),
     ],
 )

@@ -174,7 +174,7 @@ def test_a_number_of_frames_that_is_no_round_time_gets_no_fix() -> None:
         (
             "avoid phase drops by 2 within 5 s",
             "no clause says by how much `phase` changes in 5 s "
-            "(`previous(previous(previous(previous(previous(phase)))))` is the value 5 s before): "
+            "(`previous(phase, 5 s)` is the value 5 s before): "
             "let the game record that number as a signal, such as `signal phase_change in [-100, 100]`, and compare it",
         ),
         ("keep always within 2 s of a, b", "write `keep within 2 s of a, b`"),

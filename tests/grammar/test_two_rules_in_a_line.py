@@ -66,6 +66,10 @@ SEVERAL_READINGS = {
         "keep ends fire implies always for 3 s not (begins spray) "
         "keep begins spray implies always for 3 s not (ends fire)",
     ],
+    "if fire starts, spray, otherwise boss_dead": [
+        "keep fire implies spray keep not fire implies boss_dead",
+        "keep begins fire implies spray keep not begins fire implies boss_dead",
+    ],
     "at least 3 s between fire and spray": [
         "keep begins fire implies always for 3 s not (begins spray)",
         "keep ends fire implies always for 3 s not (begins spray)",
@@ -74,7 +78,6 @@ SEVERAL_READINGS = {
     ],
 }
 UNCLEAR = [
-    "if fire starts, spray, otherwise boss_dead",
     "at least 3 s between begins fire",
     "at least 3 s between fire and spray or boss_dead",
     "fire for at least 5 s and keep spray if boss_dead",

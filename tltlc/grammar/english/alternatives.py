@@ -5,23 +5,40 @@ from __future__ import annotations
 from tltlc.core.record import replace
 from tltlc.grammar.english.answers import Asked
 from tltlc.grammar.english.events import Event, as_state
+from tltlc.grammar.english.intervals import changing, is_edge
 from tltlc.grammar.english.quantities import Duration, Number, comparison
 from tltlc.grammar.english.rules import Reading, Rules, When
 from tltlc.grammar.english.terminals import Term
 from tltlc.grammar.mistakes.sentences.states import ATOM, State, joined
 
+_Found = Reading | list[Reading] | None
+
 
 class Alternatives(Rules):
     """The meanings of the rules with two cases, and of the events that come after so long a time."""
 
-    def otherwise(self, when: When, event: Event, answers: list[Asked], others: list[Asked]) -> Reading | None:
-        """Return the rules of `if a, b, otherwise c`: one for the steps with a, and one for those without it."""
+    def otherwise(self, when: When, event: Event, answers: list[Asked], others: list[Asked]) -> _Found:
+        """Return the rules of `if a, b, otherwise c`: one for the steps with a, and one for those without it.
+
+        `if a begins` may mean its first step or all steps of a, unless the answers compare a number with its last.
+        """
         state = as_state(event)
         if any(asked.answer.time for asked in (*answers, *others)):
             return None  # `b within 2 s, otherwise c` may ask for c where b does not come in time
-        is_change = state is not None and state.text.startswith(("begins ", "ends "))
-        if when == "after" or state is None or (is_change and not all(map(_says_next_value, (*answers, *others)))):
+        if when == "after" or state is None:
             return None
+        if not is_edge(state) or all(map(_says_next_value, (*answers, *others))):
+            return self._two_cases(state, answers, others)
+        lasting = changing(state) if state.text.startswith("begins ") else changing(state).negated()
+        at_once, throughout = (self._two_cases(case, answers, others) for case in (state, lasting))
+        if at_once is None or throughout is None:
+            return None
+        return [
+            replace(throughout, condition=f"if they are for the steps with and without `{lasting.text}`"),
+            replace(at_once, condition=f"if the first is for the step of `{state.text}` alone"),
+        ]
+
+    def _two_cases(self, state: State, answers: list[Asked], others: list[Asked]) -> Reading | None:
         first, second = (
             self.implies(known, [*map(_at_this_step, asked)])
             for known, asked in ((state, answers), (state.negated(), others))
@@ -34,10 +51,10 @@ class Alternatives(Rules):
             clauses += readings[0].clauses
         return Reading(tuple(clauses))
 
-    def otherwise_implies(self, event: Event, answers: list[Asked], others: list[Asked]) -> Reading | None:
+    def otherwise_implies(self, event: Event, answers: list[Asked], others: list[Asked]) -> _Found:
         return self.otherwise("when", event, answers, others)
 
-    def otherwise_last(self, answers: list[Asked], when: When, event: Event, others: list[Asked]) -> Reading | None:
+    def otherwise_last(self, answers: list[Asked], when: When, event: Event, others: list[Asked]) -> _Found:
         return self.otherwise(when, event, answers, others)
 
     # An event that has lasted so long.

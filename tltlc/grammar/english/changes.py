@@ -7,15 +7,12 @@ from typing import Final
 
 from tltlc.grammar.english.answers import Asked
 from tltlc.grammar.english.events import Event, Held, as_state
-from tltlc.grammar.english.quantities import MIRRORED, Change, Duration, Number, begun, comparison
+from tltlc.grammar.english.quantities import Change, Duration, Number, begun, comparison
 from tltlc.grammar.english.rules import LASTING, Reading, Rules, When
 from tltlc.grammar.english.terminals import Term
 from tltlc.grammar.mistakes.declared_names import DeclaredNames
 from tltlc.grammar.mistakes.sentences.changes import keeps_values
 from tltlc.grammar.mistakes.sentences.states import AND, ATOM, OR, State, joined
-
-_MOST_STEPS_BACK: Final = 10
-"""The most steps by which a clause looks back at the value of a number."""
 
 _ONE_WAY: Final = re.compile(r"(\w+) (<=|>=) previous\(\1\)")
 """A number that never rises, or never falls."""
@@ -30,20 +27,6 @@ class Changes(Rules):
         super().__init__(names)
         self._kept_enums: set[str] = set()
         """The conditions that an enum keeps its value."""
-
-    def cannot_change_within(self, term: Term, change: Change, sign: str, step: Number, duration: Duration) -> _Found:
-        before = self.value_before(term, duration)
-        opposite = {">": "<=", ">=": "<"}.get(sign)
-        if before is None or opposite is None or change not in ("falls", "rises"):
-            return None
-        if self.steps(duration) > 1:
-            self.limits.append(
-                f"no clause says by how much `{term.text}` changes in {duration.text}: let the game record that number "
-                "as a signal, and compare it"
-            )
-            return None  # each step of that time would count
-        operator, relation = ("-", MIRRORED[opposite]) if change == "falls" else ("+", opposite)
-        return Reading((f"keep {term.text} {relation} {before.text} {operator} {step.text}",))
 
     def cannot_vary(self, term: Term, change: Change) -> _Found:
         if change in ("rises", "falls"):
@@ -118,6 +101,10 @@ class Changes(Rules):
     def last(self, answers: list[Asked], when: When, event: Event) -> _Found:
         return self._same_while(when, event, answers) or super().last(answers, when, event)
 
+    def implied(self, event: Event, answers: list[Asked]) -> _Found:
+        same = None if self.is_again else self._same_while("while", event, answers)
+        return same or self.implies(event, answers)
+
     def _same_while(self, when: When, event: Event, answers: list[Asked]) -> list[Reading] | None:
         """Return the readings of `while a, b stays the same` and `while a, b never falls`: from which step on?"""
         state, asked = as_state(event), answers[0]
@@ -142,17 +129,6 @@ class Changes(Rules):
         return self.last(answers, "while", state)
 
     # Values at other steps.
-
-    def value_before(self, term: Term, duration: Duration) -> Number | None:
-        """Return the value of a number so long ago; a limit if that is too many steps."""
-        steps = round(self.steps(duration), 6)
-        if steps == int(steps) and 0 < steps <= _MOST_STEPS_BACK:
-            return Number("previous(" * int(steps) + term.text + ")" * int(steps), term)
-        self.limits.append(
-            f"no clause can say what `{term.text}` was {duration.text} ago, unless that is a few steps: let the game "
-            f"supply that number as a signal, and compare `{term.text}` with it"
-        )
-        return None
 
     def sum_before(self, number: Number, duration: Duration) -> Number | None:
         """Return the value of a sum so long ago, as in `(x - y) 5 s ago`."""

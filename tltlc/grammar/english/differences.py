@@ -79,15 +79,15 @@ class Differences(Intervals):
         if value is None or difference.change not in ("falls", "rises") or not difference.sign:
             return None
         if difference.sign in ("<", "<="):
-            rule = _changed(difference, value)
+            rule = changed(difference, value)
             if rule is None:
                 return None
             inside = "" if period.state is None else f"{period.state.at(OR)} implies "
             return Reading((f"keep {inside}{rule.text}",))
         if period.state is not None:
-            rule = _changed(difference, value)
+            rule = changed(difference, value)
             return None if rule is None else Reading((f"keep ends {period.state.at(ATOM)} implies {rule.text}",))
-        rule = _changed(difference, Number(f"previous({value.text})", value.term))
+        rule = changed(difference, Number(f"previous({value.text})", value.term))
         return None if rule is None else Reading((f"keep {period.event.at(OR)} implies {rule.text}",))
 
     def change_while(self, difference: Difference, period: Period) -> _Found:
@@ -98,7 +98,7 @@ class Differences(Intervals):
         whole = self.change_in(difference, period)
         if not isinstance(whole, Reading) or period.state is None:
             return whole
-        step = _changed(difference, Number(f"previous({difference.term.text})", difference.term))
+        step = changed(difference, Number(f"previous({difference.term.text})", difference.term))
         assert step is not None
         return [
             replace(whole, condition=f"if it counts from where `{period.state.text}` began"),
@@ -124,13 +124,13 @@ class Differences(Intervals):
 
     def change_since(self, difference: Difference, event: State) -> _Found:
         value = self.value_at_last(difference.term, event)
-        rule = None if value is None else _changed(difference, value)
+        rule = None if value is None else changed(difference, value)
         if rule is None or not difference.sign:
             return None
         return Reading((f"{'keep' if difference.sign in ('<', '<=') else 'reach'} {rule.text}",))
 
 
-def _changed(difference: Difference, before: Number) -> State | None:
+def changed(difference: Difference, before: Number) -> State | None:
     """Return that a number has changed by so much since it had a value."""
     operator, sign = ("-", MIRRORED[difference.sign]) if difference.change == "falls" else ("+", difference.sign)
     then = Number(f"{before.text} {operator} {difference.step.text}", difference.term)

@@ -122,6 +122,16 @@ class Intervals(Rules):
             Reading((f"require {a} until {b}",), f"if `{end.text}` must come"),
         ]
 
+    def until_in_time_rule(self, state: State, duration: Duration, end: State) -> Reading | None:
+        """Return the rules of `a until within 2 s b`: b in that time, and a up to it."""
+        if is_negative(end) or not are_simple(state, end):
+            return None
+        until = f"require {state.at(ATOM)} until {end.at(ATOM)}"
+        return Reading((f"require eventually within {duration.text} {end.at(ATOM)}", until))
+
+    def until_by_rule(self, state: State, end: State, duration: Duration) -> Reading | None:
+        return self.until_in_time_rule(state, duration, end)
+
     def finally_at_end(self, state: State) -> _Found:
         return [
             Reading((f"require eventually always {state.at(ATOM)}",), "if it must hold at the last step"),
@@ -359,6 +369,11 @@ def _weak_or_strong(weak: Reading | None, strong: Reading, condition: str) -> _F
     if weak is None:
         return None
     return [Reading(weak.clauses, "if play may end in the middle of that time"), Reading(strong.clauses, condition)]
+
+
+def changing(edge: State) -> State:
+    """Return the condition of which an edge is the beginning or the end."""
+    return State(edge.text.partition(" ")[2])
 
 
 def apart(state: State, duration: Duration) -> list[Reading]:

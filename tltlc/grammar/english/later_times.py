@@ -8,9 +8,10 @@ from typing import Final
 from tltlc.core.record import replace
 from tltlc.grammar.english.answers import MOST_STEPS, Asked, is_negative
 from tltlc.grammar.english.events import Event, as_state
-from tltlc.grammar.english.intervals import apart
+from tltlc.grammar.english.intervals import apart, is_edge
 from tltlc.grammar.english.quantities import Duration
 from tltlc.grammar.english.rules import Reading, Rules, When, are_simple, begun_text
+from tltlc.grammar.mistakes.declared_names import DeclaredNames
 from tltlc.grammar.mistakes.sentences.answers import Answer
 from tltlc.grammar.mistakes.sentences.states import AND, ATOM, OR, State, joined
 
@@ -23,6 +24,11 @@ _Found = Reading | list[Reading] | None
 
 class LaterTimes(Rules):
     """The meanings of the rules about a step, or some steps, a time after an event, and about events so long ago."""
+
+    def __init__(self, names: DeclaredNames) -> None:
+        super().__init__(names)
+        self._lasted: dict[str, State] = {}
+        """What each time that looks back is the time of."""
 
     # Answers between two times.
 
@@ -110,6 +116,29 @@ class LaterTimes(Rules):
             (f"keep {over.at(OR)} implies {state.at(OR)}",),
             f"if the {duration.text} count from the last step with `{event.text}`",
         )
+
+    # A time before or after an event.
+
+    def and_for_time_after(self, state: State, duration: Duration) -> State | None:
+        """Return the condition of `a and for 2 s after`: a now, or at most so long ago."""
+        return None if is_edge(state) else State(f"once within {duration.text} {state.at(ATOM)}")
+
+    def held_until_then(self, state: State, duration: Duration) -> Asked | None:
+        """Return the answer of `when a, b for at least 2 s` that looks back, where b has lasted until then."""
+        if state.level > ATOM or is_edge(state):
+            return None
+        held = State(f"time_holding({state.text}) >= {duration.text}")
+        if duration.is_steps:
+            held = State(f"historically for {duration.text} {state.text}")
+        self._lasted[held.text] = state
+        return Asked(Answer("now", held), f"if `{state.text}` must have held for so long by then")
+
+    def implies(self, event: Event, answers: list[Asked]) -> _Found:
+        """Return the rule; what has only begun has not held for a time."""
+        begun, lasted = as_state(event), self._lasted.get(answers[0].answer.state.text)
+        if begun is not None and lasted is not None and begun.text in (lasted.text, begun_text(lasted)):
+            return None
+        return super().implies(event, answers)
 
     # Windows after an event.
 

@@ -80,11 +80,13 @@ def _notes(expression: Expr, source: SourceFile, step_s: float) -> Iterator[tupl
             steps = _steps(part.bound.high, step_s)
             if 1 < steps <= _MOST_STEPS:
                 yield (
-                    f"`{source.slice(part.span)}` asks for {ceil(steps)} steps, the present one among them",
+                    f"`{source.slice(part.span)}` asks for {ceil(steps)} steps, from the present one on",
                     ("always", "G["),
                 )
         if isinstance(part, BinaryExpr) and part.op in ("U", "W"):
             yield from _counted_before(part.left, source)
+        if note := _apart_note(part, source, step_s):
+            yield note, ("then within",)
         if isinstance(part, BinaryExpr) and part.op == "U":
             end = source.slice(part.right.span)
             yield f"write `weak_until` for `until` if play may end before `{end}`", ("weak_until",)
@@ -101,6 +103,19 @@ def _counted_before(asked: Expr, source: SourceFile) -> Iterator[tuple[str, tupl
     for part in parts(asked):
         if isinstance(part, CallExpr) and part.name in _FROM_START:
             yield f"`{source.slice(part.span)}` also counts what was before this rule begins", ()
+
+
+def _apart_note(rule: Expr, source: SourceFile, step_s: float) -> str:
+    """Return that `a then within 3 s a` is met by two a exactly 3 s apart, and the time that it is not; else ""."""
+    if not isinstance(rule, BinaryExpr) or rule.op != "then" or rule.bound is None:
+        return ""
+    event, again = source.slice(rule.left.span), source.slice(rule.right.span)
+    steps = _steps(rule.bound.high, step_s)
+    if event != again or not 1 < steps <= _MOST_STEPS or steps != int(steps):
+        return ""
+    longest = rule.bound.high
+    shorter = f"{round(longest.value * (1 - 1 / steps), 6):g} {longest.unit}"
+    return f"{source.slice(longest.span)} after the first is forbidden, too: write {shorter} if it is allowed"
 
 
 def _window_note(call: CallExpr, source: SourceFile, step_s: float) -> str:
@@ -162,6 +177,8 @@ def reading_notes(clauses: str, names: DeclaredNames, typed: str) -> tuple[str, 
     if source is not None and "time_holding" not in typed:
         compared = (part for part in _parts_of(specs) if isinstance(part, BinaryExpr) and part.op in (">", ">="))
         times = [_of_time(part, source, names.step_s) for part in compared if _is_held(part.left)]
+    if source is not None and "then within" not in typed:
+        times += [_apart_note(part, source, names.step_s) for part in _parts_of(specs)]
     return (*equality_notes(clauses, typed), *dict.fromkeys(note for note in times if note))
 
 

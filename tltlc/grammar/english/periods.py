@@ -187,6 +187,23 @@ class Periods(Totals):
     def while_count(self, when: When, event: Event, counted: Counted) -> _Found:
         return self.count_while(counted, when, event)
 
+    def count_implied(self, event: Event, *answers: State | Counted) -> _Found:
+        """Return the readings of `keep a implies b at most once`: b counts from the first step, or from each a."""
+        *states, counted = answers
+        state, limit = as_state(event), self.limit_count(counted) if isinstance(counted, Counted) else None
+        if state is None or not isinstance(limit, Reading) or not isinstance(counted, Counted):
+            return None
+        others = self.count_while(counted, "while", state)
+        if counted.sign not in ("<=", "<") or limit.clauses[0].startswith("avoid ") or not isinstance(others, list):
+            return None
+        at_start = f"keep {state.at(OR)} implies {limit.clauses[0].removeprefix('keep ')}"
+        readings = [Reading((at_start,), "if the count begins with the first step"), *others]
+        if not states:
+            return readings if counted.state.level <= ATOM else None
+        asked = joined([part for part in states if isinstance(part, State)], "and")
+        first = f"keep {state.at(OR)} implies {asked.text}"
+        return [replace(reading, clauses=(first, *reading.clauses)) for reading in readings]
+
     def count_in(self, counted: Counted, state: State) -> _Found:
         return self.count_while(counted, "while", state)
 

@@ -235,7 +235,10 @@ PHRASES: Final[Mapping[str, str]] = {
     "mustn't change|shouldn't change|must stay the same|must remain the same|must stay constant|"
     "must remain constant|must be constant|has to stay the same|"
     "is unchanged|stays constant|remains unchanged|stays unchanged|unchanged|constant|"
-    "remains constant|keeps its value|is constant|frozen|is frozen|stays frozen|stays put|not change|fixed|is fixed",
+    "remains constant|keeps its value|is constant|frozen|is frozen|stays frozen|stays put|not change|fixed|is fixed|"
+    "are unchanged|are constant|are frozen|are fixed|stay constant|stay unchanged|remain unchanged|"
+    "stay fixed|stay frozen|keep their values|keep their value|keep same value|keeps same value|must be unchanged|"
+    "must stay unchanged",
     "changes": "changes|change|changed|varies",
     "come": "go on|come on|be triggered|be raised|sound|ring|start|begin|come|trigger|appear|take place|be reached",
     "go_off": "go off|goes off|went off",
@@ -277,6 +280,7 @@ PHRASES: Final[Mapping[str, str]] = {
     "in single step|at once|between steps|between two steps|per tick|at time|at one time|in one go|in step|each time",
     "pause_of": "cooldown of|cooldown|pause of|pause of at least|wait at least|wait|gap of|gap of at least",
     "in_sequence": "consecutive|successive|next|another",
+    "in_row": "in a row|consecutively|in succession|successively|one after other|running",
     "means": "means|means that|implies that",
     "count_of": "count|number of|number of times",
     "duration_of": "duration|duration of|time_in|hold_time|length of|how long",

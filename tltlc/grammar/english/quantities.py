@@ -9,7 +9,7 @@ from tltlc.grammar.english.terminals import Term
 from tltlc.grammar.mistakes.declared_names import DeclaredNames
 from tltlc.grammar.mistakes.sentences.states import AND, ATOM, OR, State, joined
 from tltlc.grammar.mistakes.sentences.vocabulary import NEGATED_SIGN
-from tltlc.grammar.past_words import SINCE
+from tltlc.grammar.past_words import MOST_STEPS_BACK, SINCE
 
 MIRRORED: Final = {"<": ">", "<=": ">=", ">": "<", ">=": "<=", "==": "==", "!=": "!="}
 Change = Literal["falls", "rises", "stays", "varies"]
@@ -277,6 +277,19 @@ class Quantities:
         if state is not None and change != "stays":
             self.changing.add(state.text)
         return state
+
+    def value_before(self, term: Term, duration: Duration) -> Number | None:
+        """Return the value of a number so long ago; a limit if that is too many steps."""
+        steps = round(self.steps(duration), 6)
+        if steps == 1:
+            return Number(f"previous({term.text})", term)
+        if 0 < steps <= MOST_STEPS_BACK:
+            return Number(f"previous({term.text}, {duration.text})", term)
+        self.limits.append(
+            f"no clause can say what `{term.text}` was {duration.text} ago, unless that is {MOST_STEPS_BACK} steps or "
+            f"less: let the game supply that number as a signal, and compare `{term.text}` with it"
+        )
+        return None
 
     def never_changes(self, term: Term, change: Change) -> State | None:
         state = self.changes(term, change)

@@ -42,7 +42,10 @@ _CONTENT: Final = frozenset((*_FIRST, UNKNOWN, "VALUE", "SIGN", "UNIT", "TIME_UN
 """The terminals that a sentence which is understood has in conditions and times alone."""
 _LASTING: Final = frozenset("stays stay remains remain must should never".split())
 """Words of a condition alone that make it a rule for every step."""
-_VERBS: Final = phrases("lasts", "takes", "goes", "follows", "is followed", "happens", "must", "may", "changes only")
+_VERBS: Final = phrases(
+    *("lasts", "takes", "goes", "follows", "is followed", "happens", "must", "may", "changes only", "only"),
+    *("never twice", "never two", "never three"),
+)
 """Words that need no `keep` before their sentence."""
 _BEFORE_EVENTS: Final = frozenset(("while", "during", "between"))
 """Words that begin a rule of their own, and need no `keep` before them."""

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from tltlc.core.record import replace
 from tltlc.grammar.english.answers import Asked
-from tltlc.grammar.english.events import Event, Held, as_state
-from tltlc.grammar.english.intervals import Intervals, is_edge
+from tltlc.grammar.english.events import Counted, Event, Held, as_state
+from tltlc.grammar.english.intervals import Intervals, changing, is_edge
 from tltlc.grammar.english.quantities import Duration
 from tltlc.grammar.english.rules import Reading, When, begun_text, never_held
 from tltlc.grammar.english.terminals import Term
@@ -46,6 +46,15 @@ class TwoRules(Intervals):
         rule = self.last([self.keep_now(state)], when, event)
         return rule if isinstance(rule, Reading) and not rule.condition else None
 
+    # How often something happens, and a condition.
+
+    def number_and(self, sign: str, number: Term, state: State, condition: State) -> Reading | None:
+        """Return the rules of `at most 5 a and b`, where b does not say which a count."""
+        limit = self.limit_count(Counted(state, sign, number.text))
+        if not isinstance(limit, Reading) or sign not in ("<=", "<"):
+            return None
+        return Reading((*limit.clauses, f"keep {condition.text}"), f"if `{condition.text}` must hold at every step")
+
     # The time between two events.
 
     def apart(self, duration: Duration, *events: Term | State) -> _Found:
@@ -54,10 +63,10 @@ class TwoRules(Intervals):
         if len({state.text for state in states}) < 2 or any(state.level > ATOM for state in states):
             return super().apart(duration, *events)
         first, second = states
-        if is_edge(first) and is_edge(second) and _changing(first) == _changing(second):
+        if is_edge(first) and is_edge(second) and changing(first) == changing(second):
             is_pause = first.text.startswith("ends ")
             pause = Reading((_free_after(first, second, duration),))
-            return pause if is_pause else self.lasts_at_least(_changing(first), duration)
+            return pause if is_pause else self.lasts_at_least(changing(first), duration)
         begun, following = State(begun_text(first)), State(begun_text(second))
         from_first, from_second = _free_after(begun, following, duration), _free_after(following, begun, duration)
         readings = [Reading((from_first,), f"from `{begun.text}` to a later `{following.text}`")]
@@ -86,11 +95,6 @@ class TwoRules(Intervals):
             Asked(Answer("now", State(either, OR)), f"{what} counts at the step of the condition", is_formula=True),
             Asked(Answer("now", State(also_later, OR)), f"{what} at the next step is enough, too", is_formula=True),
         ]
-
-
-def _changing(edge: State) -> State:
-    """Return the condition of which an edge is the beginning or the end."""
-    return State(edge.text.partition(" ")[2])
 
 
 def _free_after(event: State, other: State, duration: Duration) -> str:

@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Final
-
-from tltlc.grammar.english.differences import Difference, Differences
+from tltlc.core.record import replace
+from tltlc.grammar.english.differences import Difference, Differences, changed
 from tltlc.grammar.english.events import Counted, Event, as_state
 from tltlc.grammar.english.intervals import Every
-from tltlc.grammar.english.quantities import Duration, begun
+from tltlc.grammar.english.quantities import Change, Duration, Number, begun
 from tltlc.grammar.english.rules import Reading, When
 from tltlc.grammar.english.terminals import Term
 from tltlc.grammar.mistakes.sentences.states import ATOM, OR, State, joined
 
-_MOST_STEPS_BACK: Final = 10
-"""The most steps back for which a help writes `previous` in each other."""
+_Found = Reading | list[Reading] | None
 
 
 class Windows(Differences):
@@ -73,16 +71,26 @@ class Windows(Differences):
     def count_within_after(self, counted: Counted, window: Duration, event: Event) -> Reading | None:
         return self.when_count_within("after", event, counted, window)
 
-    def change_in_window(self, difference: Difference, window: Duration) -> None:
-        """Say that no clause has `health falls by at most 5 in 3 s`; a few steps have the value before them."""
-        steps, name = round(self.steps(window), 6), difference.term.text
-        if steps == 1:
-            return
-        before = "previous(" * int(steps) + name + ")" * int(steps) if steps in range(2, _MOST_STEPS_BACK + 1) else ""
-        what = f" (`{before}` is the value {window.text} before)" if before else ""
-        self._let_game_record(
-            f"says by how much `{name}` changes in {window.text}{what}", f"{_name(name)}_change in [-100, 100]"
-        )
+    def change_in_window(self, difference: Difference, window: Duration) -> Reading | None:
+        """Return the rule of `health falls by at most 5 in 3 s`, which compares it with the value 3 s before alone."""
+        value, name = self.value_before(difference.term, window), difference.term.text
+        if value is None or difference.change not in ("falls", "rises") or difference.sign not in ("<", "<="):
+            before = "" if value is None else f" (`{value.text}` is the value {window.text} before)"
+            what = f"says by how much `{name}` changes in {window.text}{before}"
+            self._let_game_record(what, f"{_name(name)}_change in [-100, 100]")
+            return None
+        rule = changed(difference, value)
+        if rule is None:
+            return None
+        condition = f"if `{name}` is compared with what it was {window.text} before, whatever it was in between"
+        return Reading((f"keep {rule.text}",), "" if self.steps(window) == 1 else condition)
+
+    def avoid_change_in_window(self, difference: Difference, window: Duration) -> Reading | None:
+        sign = {">": "<=", ">=": "<"}.get(difference.sign, "")
+        return self.change_in_window(replace(difference, sign=sign), window)
+
+    def cannot_change_within(self, term: Term, change: Change, sign: str, step: Number, window: Duration) -> _Found:
+        return self.avoid_change_in_window(Difference(term, change, sign, step), window)
 
     def mean_of(self, term: Term, *windows: Duration) -> None:
         self._let_game_record(f"takes the mean of `{term.text}`", f"{_name(term.text)}_mean in [0, 100]")

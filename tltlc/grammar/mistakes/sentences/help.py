@@ -57,8 +57,8 @@ _ENGLISH_ALONE: Final = (
     ),
 )
 """Words whose meaning in English is not that of an operator, or more than that of a comparison."""
-_VERBS: Final = phrases("change", "changes", "stay", "stays", "remain", "remains")
-"""Verbs of a sentence behind `require`, which asks for something at the first step alone."""
+_WITHOUT_REQUIRE: Final = phrases("change", "changes", "stay", "stays", "remain", "remains", "until within")
+"""Words of a sentence behind `require` that need no `require`, which asks for something at the first step alone."""
 _GOALS: Final = ("reach ", "require eventually ")
 """What clauses begin with that ask for something once, as verbs do."""
 _TIMED: Final = (" implies always for ", " implies eventually ", "time_holding(")
@@ -116,7 +116,7 @@ def _with_reading(
         (is_whole and not _is_foreign(known.fixes[0], failure)) or _has_readings(failure, known.help or "")
     ):
         return known
-    if words.word(0) == "require" and (words.word(1) in ("at", "the", "in", "for") or words.find(_VERBS)):
+    if words.word(0) == "require" and (words.word(1) in ("at", "the", "in", "for") or words.find(_WITHOUT_REQUIRE)):
         words = words[1:]
     if not words or words.word(0) == "require":
         return known
@@ -185,14 +185,21 @@ def _may_miss(failure: ParseFailure, fix: Fix, words: Words) -> bool:
 
     It compares a value with that of the step before from some step on, or while something holds, and the first such
     step may not be meant. Or it says how long something lasts `unless` something else comes, which may also end that
-    time, or `after` something, which may itself last.
+    time, or `after` something, which may itself last. Or it counts what comes before the condition of its rule, too,
+    or leaves a condition out of what it counts.
     """
     text = mended(failure, fix)
+    answer = text.partition(" implies ")[2]
+    is_new = "times(" not in words.text
+    is_counted = is_new and "times(" in answer and " <= " in answer
+    is_joined = is_new and text.startswith("keep times(") and " and " in text
     is_compared = " implies always " in text and "previous(" in text
     is_same = words.find(LASTING) is not None and keeps_values(text.partition(" implies ")[2])
     is_denied = " implies always for " in text and " not " in text and words.find(phrases("after")) is not None
     return (
         is_compared
+        or is_counted
+        or is_joined
         or is_same
         or is_denied
         or takes_one_reading(text, words)
