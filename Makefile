@@ -66,9 +66,11 @@ BUSY   ?= 6
 test-again: $(VENV)/.installed-dev
 	$(BIN)/python -m tests.repeated_runs $(N) $(BUSY) $(ARGS)
 
-# Run the slow tests: whole trainings, Ray clusters, long sessions, the shipped suite, large formulas. This takes minutes.
+# Run the slow tests: whole trainings, Ray clusters, long sessions, the shipped suite, large formulas. This takes half an
+# hour. `make test-slow PART=2/4` runs the second of four parts.
+PART   ?= 1/1
 test-slow: $(VENV)/.installed-dev
-	$(BIN)/python -m pytest -q -rs -n 2 -m slow
+	$(BIN)/python -m pytest -q -rs -n 2 -m slow --part $(PART)
 
 # Run the property tests with new examples each time; a failure prints how to reproduce it.
 fuzz: $(VENV)/.installed-dev

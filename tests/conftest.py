@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import argparse
 import gc
 import os
 import shutil
@@ -10,6 +11,7 @@ import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
+from zlib import crc32
 
 import pytest
 from hypothesis import HealthCheck, settings
@@ -45,6 +47,18 @@ HANDLERS: dict[signal.Signals, Any] = {
 _cache = tempfile.mkdtemp(prefix="tltlc-tests-")
 
 
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """Add ``--part 2/4``, with which only one of four parts of the tests runs."""
+    parser.addoption("--part", type=_part, default=(1, 1), metavar="I/N", help="run part I of N parts of the tests")
+
+
+def _part(text: str) -> tuple[int, int]:
+    number, count = map(int, text.split("/"))
+    if not 1 <= number <= count:
+        raise argparse.ArgumentTypeError(f"part {number} of {count} parts")
+    return number, count
+
+
 def pytest_configure(config: pytest.Config) -> None:
     """Isolate the tests, and the processes that they start, from the user's environment."""
     for name in LEFT_OUT:
@@ -74,8 +88,15 @@ def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool 
     return True if quick.is_chosen(config) and not quick.has_quick_tests(collection_path) else None
 
 
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Mark the quick tests, before pytest selects tests by their marks."""
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Leave out the tests of other parts, and mark the quick tests, before pytest selects tests by their marks."""
+    number, count = config.getoption("--part")
+    # Cases of one test often take equally long, so they are spread over all parts.
+    others = [item for item in items if crc32(item.nodeid.encode()) % count != number - 1]
+    if others:
+        config.hook.pytest_deselected(items=others)
+        left_out = {*others}
+        items[:] = [item for item in items if item not in left_out]
     for item in items:
         if quick.is_quick(item):
             item.add_marker(quick.QUICK)
