@@ -145,7 +145,7 @@ class Texts:
             return f"{function}({self._plain(depth - 1)}, {self.past(depth - 1)})"
         if random.random() < 0.1:
             return (
-                f"previous({self._plain(depth - 1)}, {random.choice(('1 steps', '2 steps', '5 steps', self._time()))})"
+                f"previous({self._plain(depth - 1)}, {random.choice(('1 step', '2 steps', '5 steps', self._time()))})"
             )
         return f"{random.choice(('previous', 'initial', 'highest', 'lowest'))}({self._plain(depth - 1)})"
 

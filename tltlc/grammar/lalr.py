@@ -43,7 +43,7 @@ def run(tables: ParserTables, start: str, tokens: Sequence[Token], builder: obje
     begins: list[int] = []
     end = 0
     for index, token in enumerate(tokens):
-        kind = _terminal_of(tables, states[-1], tokens, index)
+        kind = _terminal_of(tables, states, tokens, index)
         while True:
             action = actions[states[-1]].get(kind)
             if action is None:
@@ -102,18 +102,20 @@ def _accepts(tables: ParserTables, states: list[int], terminal: str) -> bool:
             return True
 
 
-def _terminal_of(tables: ParserTables, state: int, tokens: Sequence[Token], index: int) -> str:
-    """Return the terminal of the token at ``index``, which the parser reads in ``state``.
+def _terminal_of(tables: ParserTables, states: Sequence[int], tokens: Sequence[Token], index: int) -> str:
+    """Return the terminal of the token at ``index``, which the parser reads in the last of its ``states``.
 
     For most tokens, this is the token's type. An unreserved word, such as ``within``, can be a keyword
     or a name, and the grammar decides which. Where it allows both, the word is a keyword if a number
-    follows (``F within 20 steps p``).
+    follows (``F within 20 steps p``). The unit ``step`` is a unit where no step of a test can begin.
     """
     token = tokens[index]
     soft = tables.soft.get(token.text)
-    if soft is None or token.type == "STRING" or soft not in (row := tables.actions[state]):
+    if soft is None or token.type == "STRING" or soft not in (row := tables.actions[states[-1]]):
         return token.type
-    if token.type not in row or token.type == "UNIT" or tokens[index + 1].type == "NUMBER":
+    if token.type == "UNIT" and token.type in row:
+        return soft if _accepts(tables, list(states), soft) else token.type
+    if token.type not in row or tokens[index + 1].type == "NUMBER":
         return soft
     return token.type
 

@@ -355,7 +355,7 @@ def _of_number(expr: CallExpr, env: Env, level: int) -> Quantity:
     _check_length(len(value.text), argument, env)
     back = _steps_back(expr, env) if expr.arguments[1:] and event is None else None
     texts = (value.text,) if event is None else (value.text, _event_text(expr, event, env))
-    if back is not None:
+    if back is not None and back[1] > 1:
         texts = (value.text, back[0])
     name = f"{expr.name}({', '.join(texts)})"
     call = (expr.name, texts) if value.is_bool else None
