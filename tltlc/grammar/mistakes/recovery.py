@@ -27,6 +27,8 @@ from tltlc.grammar.mistakes.declaration_forms.reading import (
 from tltlc.grammar.mistakes.fragments import block_kind, declarations, is_first_on_line, lines
 from tltlc.grammar.tables import load
 
+_FIRST: Final = ("NAME", "LPAR", "ONCE", "HISTORICALLY", "PREVIOUSLY", "BEGINS", "ENDS")
+"""The tokens with which a formula without its keyword begins, and which continue no clause of the line before."""
 _MOST_SENTENCES: Final = 20
 """The most errors of a text of which the clause is read as a sentence, so that a bad text is checked in time."""
 MAX_ERRORS: Final = 200
@@ -142,8 +144,8 @@ class _Reader:
     def _read_line(self, line: list[Token], start: str) -> list[Any]:
         """Parse one clause of a spec or line of a test; return it in a list, which is empty if it is broken.
 
-        Errors are added to ``diagnostics``. If an unknown word begins a new line after a complete
-        clause, return the clause and report the word.
+        Errors are added to ``diagnostics``. If a word that begins no clause begins a new line after a
+        complete clause, return the clause and report the word.
         """
         if self._refuse_deep(line):
             return []
@@ -152,7 +154,7 @@ class _Reader:
             return [result]
         at = result.index
         is_whole = 0 < at < len(line) and END in lalr.allowed_terminals(load(), result.states)
-        if is_whole and line[at].type == "NAME" and is_first_on_line(self._source, line, at):
+        if is_whole and line[at].type in _FIRST and is_first_on_line(self._source, line, at):
             whole = self._attempt(start, line[:at])
             # The first token of the remainder is the unexpected one.
             self._refuse(line[at:], start, lalr.UnexpectedTokenError(0, [load().starts[start]]))
