@@ -266,6 +266,10 @@ class Definition(Names):
             assert not parts[1:] or isinstance(parts[1], NumberExpr)
             back = self._steps(parts[1]) if parts[1:] else 1  # type: ignore[arg-type]
             return self.number(of, max(0, i - back), scope)
+        if name in ("highest_within", "lowest_within"):
+            assert isinstance(parts[1], NumberExpr)
+            near = [self.number(of, j, scope) for j in so_far if i - j <= self._steps(parts[1])]
+            return max(near) if name == "highest_within" else min(near)
         if name == "initial":
             return self.number(of, 0, scope)
         if name in ("highest", "lowest"):
@@ -284,6 +288,9 @@ class Definition(Names):
             found: float = sum(begins[j] for j in so_far if self._is_inside(parts[1], j, i))
         elif name in COUNTS:
             found = sum(begins[last:])
+        elif name == "total_time_within":
+            assert isinstance(parts[1], NumberExpr)
+            found = self._seconds(sum(truth[max(i - self._steps(parts[1]) + 1, 1) :]))
         elif name in ("total_time", "total_time_since"):
             found = self._seconds(sum(truth[max(last, 1) :]))
         elif name == "time_since":
@@ -359,7 +366,7 @@ class Definition(Names):
         return expr.name
 
     def _written_maximum(self, name: str, parts: list[Expr], scope: Scope) -> float:
-        if len(parts) == 1 + (name in (*WITH_EVENT, "times_within")):
+        if len(parts) == 1 + (name in (*WITH_EVENT, "times_within", "total_time_within")):
             return inf
         limit = parts[-1]
         while isinstance(limit, GroupExpr):

@@ -10,7 +10,7 @@ from tltlc.grammar.module import Module
 from tltlc.grammar.tree import CallExpr, Expr, GroupExpr, NameExpr, Quantified
 
 COUNTS: Final = ("times", "times_since", "times_within")
-TIMES: Final = ("time_since", "time_holding", "total_time", "total_time_since")
+TIMES: Final = ("time_since", "time_holding", "total_time", "total_time_since", "total_time_within")
 WITH_EVENT: Final = ("times_since", "total_time_since", "highest_since", "lowest_since", "value_at")
 MEMORY: Final = (
     *COUNTS,
@@ -21,6 +21,8 @@ MEMORY: Final = (
     "lowest",
     "highest_since",
     "lowest_since",
+    "highest_within",
+    "lowest_within",
     "value_at",
 )
 """The functions of the trace so far."""

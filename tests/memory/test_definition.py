@@ -243,6 +243,21 @@ def test_a_number_so_long_ago_is_that_of_the_first_sample_until_there_is_one() -
         assert verdicts == ["holding"] * 7 + ["violated"], length
 
 
+def test_the_highest_value_within_a_time_forgets_earlier_ones() -> None:
+    (fspa,) = compile_text("clock 10 Hz signal hp in [0, 9] spec s = G (hp >= highest_within(hp, 0.2 s) - 2)")
+    monitor = Monitor(fspa)
+    verdicts = [monitor.step({"hp": hp}).verdict for hp in (9, 8, 7, 6, 5, 4, 4, 4, 1)]
+    assert verdicts == ["holding"] * 8 + ["violated"]
+    monitor.reset()
+    assert [monitor.step({"hp": hp}).verdict for hp in (5, 8, 5)] == ["holding", "holding", "violated"]
+
+
+def test_the_time_within_a_time_is_no_more_than_that() -> None:
+    (fspa,) = compile_text("clock 10 Hz signal p: bool spec s = G (total_time_within(p, 0.3 s) <= 0.2 s)")
+    monitor = Monitor(fspa)
+    assert [monitor.step({"p": p == "1"}).verdict for p in "11.11.111"] == ["holding"] * 8 + ["violated"]
+
+
 def test_previous_values_and_previous_truth_of_one_name_are_kept_apart() -> None:
     (fspa,) = compile_text(f"{BOOLS} spec s = G (previous(p) implies previously p)")
     monitor = Monitor(fspa)

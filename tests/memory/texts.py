@@ -96,6 +96,9 @@ class Texts:
             function = random.choice(("time_since", "total_time")) if kind == 1 else "time_holding"
             if random.random() < 0.2:
                 function, inner = "total_time_since", f"{inner}, {self.past(depth - 1)}"
+            elif random.random() < 0.2:
+                window = random.choice((f"{random.randint(1, 6)} steps", self._time()))
+                function, inner = "total_time_within", f"{inner}, {window}"
             maximum = f", {self._time()}" if random.random() < 0.3 else ""
             return f"{function}({inner}{maximum}) {op} {self._time()}"
         if kind == 3:
@@ -143,9 +146,10 @@ class Texts:
         if random.random() < 0.2:
             function = random.choice(("value_at", "highest_since", "lowest_since"))
             return f"{function}({self._plain(depth - 1)}, {self.past(depth - 1)})"
-        if random.random() < 0.1:
+        if random.random() < 0.2:
+            function = random.choice(("previous", "highest_within", "lowest_within"))
             return (
-                f"previous({self._plain(depth - 1)}, {random.choice(('1 step', '2 steps', '5 steps', self._time()))})"
+                f"{function}({self._plain(depth - 1)}, {random.choice(('1 step', '2 steps', '5 steps', self._time()))})"
             )
         return f"{random.choice(('previous', 'initial', 'highest', 'lowest'))}({self._plain(depth - 1)})"
 

@@ -29,7 +29,16 @@ from tltlc.automaton.remembered_formulas import (
     with_rules,
 )
 from tltlc.automaton.timer_phrases import ALWAYS, FROM_START, TIMERS
-from tltlc.automaton.value_phrases import VALUES, Phrase, count_text, time_text, value_phrase, was_phrase, window_text
+from tltlc.automaton.value_phrases import (
+    VALUES,
+    Phrase,
+    count_text,
+    is_of_window,
+    time_text,
+    value_phrase,
+    was_phrase,
+    window_text,
+)
 from tltlc.core.names import ComparisonName, SpokenName
 from tltlc.expression.tree import Before, SignalValue
 from tltlc.logic.formula import TRUE, Formula, always, and_, atom, eventually, implies, not_, or_, rebuild
@@ -245,6 +254,8 @@ class Speaker:
             words, number = self.object_text(operand), item.base.right
             since = counted_since(register)
             begin = "" if since is None else f"since {self.noun_text(since)}"
+            if is_of_window(register):
+                begin = window_text(register)
             when = window_text(register) if register.kind == "times_within" else begin
             holds, fails = (
                 count_text(words, operator, number, when)

@@ -15,7 +15,7 @@ from tltlc.automaton.remembered_formulas import (
     remembered,
     waited_for,
 )
-from tltlc.automaton.value_phrases import VALUES, value_words, window_text
+from tltlc.automaton.value_phrases import VALUES, is_of_window, value_words, window_text
 from tltlc.core.names import split_name
 from tltlc.expression.tree import Before
 from tltlc.logic.formula import TRUE, Formula
@@ -98,6 +98,8 @@ def _phrase(register: Register, registers: Mapping[str, Register], speaker: Spea
             words.append(speaker.noun_text(event))
         if register.kind == "times_within":
             words.append(window_text(register))
+        elif is_of_window(register):
+            text = f"how long {{0}} has held {window_text(register)}"
     return None if text is None else text.format(*words)
 
 

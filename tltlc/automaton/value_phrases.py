@@ -79,6 +79,8 @@ def value_words(register: Register, event: str) -> str:
     arguments = split_name(register.name)[1]
     if register.kind == "previous" and arguments[1:]:
         return f"the {arguments[0]} {arguments[1]} before"
+    if register.kind in ("highest", "lowest") and arguments[1:]:
+        return f"the {register.kind} {arguments[0]} in the last {arguments[1]}"
     value = ", ".join(arguments[:-1] if event else arguments)
     return VALUES[register.kind].format(value, event)
 
@@ -94,6 +96,11 @@ def count_text(words: str, operator: str, number: str, when: str = "") -> str:
 def window_text(register: Register) -> str:
     """Return when a register of ``times_within(p, T)`` counts: "in the last 5 s"."""
     return f"in the last {split_name(register.name)[1][-1]}"
+
+
+def is_of_window(register: Register) -> bool:
+    """Whether a register is the time of a condition in the last seconds."""
+    return split_name(register.name)[0] == "total_time_within"
 
 
 def _count_text(words: str, operator: str, number: str, so_far: str) -> str:

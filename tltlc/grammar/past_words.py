@@ -53,6 +53,10 @@ FUNCTIONS: Final = {
         ("total_time_since(p, q)", "total_time_since(p, q, MAXIMUM)"),
         "The time for which p has held since the last sample with q, which counts, too, or since the first sample.",
     ),
+    "total_time_within": PastWord(
+        ("total_time_within(p, T)", "total_time_within(p, T, MAXIMUM)"),
+        "The time for which p has held in the last T: the lengths of the steps with p in it.",
+    ),
     "previous": PastWord(
         ("previous(x)", "previous(x, T)"),
         "The value of x at the sample before, or a time T ago; as long as there is no such sample, that of the first.",
@@ -65,6 +69,12 @@ FUNCTIONS: Final = {
     ),
     "lowest_since": PastWord(
         ("lowest_since(x, q)",), "The least value of x since the last sample with q, or since the first sample."
+    ),
+    "highest_within": PastWord(
+        ("highest_within(x, T)",), "The greatest value of x at this sample and those at most T before."
+    ),
+    "lowest_within": PastWord(
+        ("lowest_within(x, T)",), "The least value of x at this sample and those at most T before."
     ),
     "value_at": PastWord(
         ("value_at(x, q)",), "The value of x at the last sample with q; before the first one, its value at the start."
@@ -80,8 +90,8 @@ SINCE: Final = {
 }
 """The functions that begin anew at an event, by those that begin at the first sample."""
 
-MOST_STEPS_BACK: Final = 128
-"""The most steps that ``previous(x, T)`` looks back: a monitor keeps a number for each."""
+MOST_STEPS_BACK: Final = 600
+"""The most steps that ``previous(x, T)`` and its like look back: a monitor keeps a number for each."""
 
 OF_EVENTS: Final = ("times_since", "total_time_since", "highest_since", "lowest_since", "value_at")
 """The functions whose second argument is a formula: the event since which, or the step at which, they ask."""

@@ -13,7 +13,7 @@ from typing import Final
 from tltlc.core.record import replace
 from tltlc.core.source import Span
 from tltlc.diagnostics.diagnostic import Label
-from tltlc.expression.tree import Before, Condition, Expression, Op, SignalValue, When, depth
+from tltlc.expression.tree import Before, Condition, Const, Expression, Op, SignalValue, When, depth
 from tltlc.grammar.past_words import FUNCTIONS, MOST_STEPS_BACK, OF_EVENTS
 from tltlc.grammar.tree import BinaryExpr, CallExpr, Expr, GroupExpr, NumberExpr, Unary
 from tltlc.io.limits import ARITHMETIC
@@ -43,7 +43,10 @@ _OF_FORMULAS: Final = (
     "time_holding",
     "total_time",
     "total_time_since",
+    "total_time_within",
 )
+_WITH_LENGTH: Final = ("times_within", "total_time_within", "highest_within", "lowest_within")
+"""The functions of the last seconds."""
 _MOST_NESTED: Final = 16
 """The most functions of the past that may stand inside each other."""
 _LONGEST: Final = 10_000
@@ -208,13 +211,13 @@ def recall(expr: CallExpr, env: Env, level: int) -> Quantity:
     around the call.
     """
     is_of_formula = expr.name in _OF_FORMULAS
-    least = 2 if expr.name in (*OF_EVENTS, "times_within") else 1
+    least = 2 if expr.name in (*OF_EVENTS, *_WITH_LENGTH) else 1
     most = least + (is_of_formula or expr.name == "previous")
     if not least <= len(expr.arguments) <= most or any(argument.name for argument in expr.arguments):
         form = " or ".join(f"`{form}`" for form in FUNCTIONS[expr.name].forms)
         first = "formula" if is_of_formula else "number"
-        if expr.name == "times_within":
-            title = "`times_within` takes a formula and a time"
+        if expr.name in _WITH_LENGTH:
+            title = f"`{expr.name}` takes a {first} and a time"
         elif expr.name not in OF_EVENTS:
             title = f"`{expr.name}` takes one {first}"
         else:
@@ -237,18 +240,26 @@ def _of_formula(expr: CallExpr, env: Env) -> Quantity:
     event = _operand(expr.arguments[1].value, env) if expr.name in OF_EVENTS else None
     texts = [ascii_text(operand)] if event is None else [ascii_text(operand), _event_text(expr, event, env)]
     window = _counted_window(expr, operand, env) if expr.name == "times_within" else None
+    steps = 0
     if window is not None:
         texts.append(window[0])
+    elif expr.name == "total_time_within":
+        length, steps = _steps_back(expr, env)
+        texts.append(length)
     name = f"{expr.name}({', '.join(texts)})"
     is_time, varies = expr.name not in registers.COUNTS, env.context.clock_varies
     unit = _seconds_per_step(expr, env) if is_time else Fraction(1)
     if not env.symbolic:
         if expr.name == "time_since":
             _time_since(operand, expr, env)
+        elif steps:
+            _total_time_within(name, operand, steps, expr, env)
         elif window is None:
             _register(_draft(name, operand, event, expr, env), expr, env)
     dimension = units.TYPES["time"] if is_time else units.PLAIN
-    read = Recall(name, unit, is_count=not is_time, is_whole=not (is_time and varies), window=window and window[1])
+    most = steps * float(unit) if steps else None
+    is_whole = not (is_time and varies)
+    read = Recall(name, unit, is_count=not is_time, is_whole=is_whole, window=window and window[1], most=most)
     open_value = Quantity(SignalValue(name), dimension, 0.0, inf, name, is_whole=not is_time, recall=read)
     if env.symbolic:
         env.context.signals.setdefault(name, Signal(name, "number", 0.0, None))
@@ -282,6 +293,19 @@ def _draft(name: str, operand: Formula, event: Formula | None, expr: CallExpr, e
     if event is None:
         return registers.times(name, truth, kept)
     return registers.times_since(name, truth, kept, _truth(event, expr, env))
+
+
+def _total_time_within(name: str, operand: Formula, steps: int, expr: CallExpr, env: Env) -> None:
+    """Add the register of ``total_time_within(p, T)``, and those of the times in one step, in two, and so on."""
+    _register(registers.first(), expr, env)
+    truth, length = _truth(operand, expr, env), registers.sample_length(varies=False)
+    before: Expression = Const(0.0)
+    for step in range(1, steps):
+        kept = f"time of {operand_text(operand)} in {step} steps"
+        _register(registers.last(kept, registers.added(truth, before, length), 0.0, float(step), 0.0), expr, env)
+        before = Before(kept)
+    update = registers.added(truth, before, length)
+    _register(RegisterDraft(name, "total_time", "steps", 0.0, None, 0.0, update), expr, env)
 
 
 def _counted_window(expr: CallExpr, operand: Formula, env: Env) -> tuple[str, Window]:
@@ -353,10 +377,10 @@ def _of_number(expr: CallExpr, env: Env, level: int) -> Quantity:
     if value.depth > ARITHMETIC.depth:
         return value
     _check_length(len(value.text), argument, env)
-    back = _steps_back(expr, env) if expr.arguments[1:] and event is None else None
+    length, steps = _steps_back(expr, env) if expr.arguments[1:] and event is None else ("", 1)
     texts = (value.text,) if event is None else (value.text, _event_text(expr, event, env))
-    if back is not None and back[1] > 1:
-        texts = (value.text, back[0])
+    if length and (steps > 1 or expr.name in _WITH_LENGTH):
+        texts = (value.text, length)
     name = f"{expr.name}({', '.join(texts)})"
     call = (expr.name, texts) if value.is_bool else None
     result = replace(value, expression=SignalValue(name), text=name, binding=CLOSED, depth=1, call=call)
@@ -366,16 +390,19 @@ def _of_number(expr: CallExpr, env: Env, level: int) -> Quantity:
     _register(registers.first(), expr, env)
     now, low, high = value.expression, _end(value.low), _end(value.high)
     before = Before(name)
-    if expr.name == "previous":
+    kind = expr.name.removesuffix("_within")
+    if expr.name == "previous" or expr.name in _WITH_LENGTH:
         # The register of `previously p` keeps the robustness of p under another name, `last p`.
-        kept = f"last value of {value.operand_text(CLOSED)}"
+        of = value.operand_text(CLOSED)
+        kept = f"last value of {of}"
         _register(registers.last(kept, now, low, high, _inside(0.0, low, high)), expr, env)
         before = Before(kept)
-        for steps in range(1, back[1] if back is not None else 1):
-            earlier = f"{value.operand_text(CLOSED)} {steps} steps before"
-            draft = registers.last(earlier, registers.at_first(now, before), low, high, _inside(0.0, low, high))
+        for step in range(1, steps):
+            kept = f"{of} {step} steps before" if kind == "previous" else f"{kind} {of} of {step} steps before"
+            value_then = before if kind == "previous" else Op("max" if kind == "highest" else "min", (before, now))
+            draft = registers.last(kept, registers.at_first(now, value_then), low, high, _inside(0.0, low, high))
             _register(draft, expr, env)
-            before = Before(earlier)
+            before = Before(kept)
     updates: dict[str, Expression] = {
         "previous": before,
         "initial": before,
@@ -383,19 +410,18 @@ def _of_number(expr: CallExpr, env: Env, level: int) -> Quantity:
         "lowest": Op("min", (before, now)),
         "value_at": before,
     }
-    update = updates[expr.name.removesuffix("_since")]
+    update = updates[kind.removesuffix("_since")]
     if event is not None:
         update = When(((_truth(event, expr, env), now),), update)
     update = registers.at_first(now, update)
     unit = str(units.si_unit(value.dimension) or "") if value.dimension else ""
-    kind = expr.name
     draft = RegisterDraft(name, kind, unit, low, high, _inside(0.0, low, high), update)  # type: ignore[arg-type]
     _register(draft, expr, env)
     return result
 
 
 def _steps_back(expr: CallExpr, env: Env) -> tuple[str, int]:
-    """Return the time of ``previous(x, T)`` as a text, and how many samples it is.
+    """Return the time of ``previous(x, T)`` or ``highest_within(x, T)`` as a text, and how many samples it is.
 
     Raises ResolutionError: TLT0210 if T is no number with a unit, TLT0312 or TLT0313 if it is no time or number of
     steps here, TLT0303 if it is no step, or more steps than a monitor remembers.
@@ -404,17 +430,21 @@ def _steps_back(expr: CallExpr, env: Env) -> tuple[str, int]:
     while isinstance(argument, GroupExpr):
         argument = argument.inner
     if not isinstance(argument, NumberExpr) or argument.unit is None:
-        title = "`previous` takes a number, and how long ago"
+        title = f"`{expr.name}` takes a {'formula' if expr.name in _OF_FORMULAS else 'number'} and a time"
         of, number = (env.scope.source.slice(argument.value.span) for argument in expr.arguments)
-        known = f"write `previous({of}, {number} steps)`" if isinstance(argument, NumberExpr) else ""
-        advice = known or f"write e.g. `previous({of}, 1 s)`, or `previous({of}, 3 steps)`"
+        known = f"write `{expr.name}({of}, {number} steps)`" if isinstance(argument, NumberExpr) else ""
+        advice = known or f"write e.g. `{expr.name}({of}, 1 s)`, or `{expr.name}({of}, 3 steps)`"
         raise problem("TLT0210", title, env.scope.source, expr.arguments[1].value.span, advice=advice)
-    steps = samples(argument, env)
     text = f"{number_text(argument.value)} {argument.unit}"
+    if env.context.clock_varies and argument.unit != "steps":
+        title, advice = f"`{expr.name}` needs a fixed clock for a time", "write a number of steps, e.g. `10 steps`"
+        raise problem("TLT0323", title, env.scope.source, argument.span, advice=advice)
+    steps = samples(argument, env)
     if not 0 < steps <= MOST_STEPS_BACK:
         of = env.scope.source.slice(expr.arguments[0].value.span)
-        title = f"`previous` looks back 1 to {MOST_STEPS_BACK} steps, and this is {steps}"
-        advice = f"supply the value that `{of}` had {text} ago as a signal: a monitor keeps a number for each step"
+        title = f"`{expr.name}` looks back 1 to {MOST_STEPS_BACK} steps, and this is {steps}"
+        what = f"the value that `{of}` had {text} ago" if expr.name == "previous" else "that number"
+        advice = f"supply {what} as a signal: a monitor keeps a number for each step"
         if not steps:
             advice = f"write `{of}` for the value at this step"
         raise problem("TLT0303", title, env.scope.source, argument.span, advice=advice)

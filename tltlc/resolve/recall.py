@@ -73,10 +73,15 @@ def is_open(value: Quantity) -> bool:
 
 
 def check_closed(value: Quantity, expr: Expr, env: Env) -> Quantity:
-    """Return a quantity unchanged; raise ResolutionError (TLT0321) if it is recalled and has no maximum."""
+    """Return a quantity that has a maximum.
+
+    Raises ResolutionError (TLT0321) if it is recalled, and neither has a maximum nor a greatest value.
+    """
     if env.symbolic or not is_open(value):
         return value
     assert value.recall is not None, "an open quantity"
+    if value.recall.most is not None:
+        return up_to(value, value.recall.most, expr, env)
     stops = f"{'counting' if value.recall.is_count else 'the time'} stops at the maximum"
     written = f"`{_closed_text(value, env)}`"
     advice = f"write the greatest value that matters, e.g. {written}: {stops}"

@@ -150,8 +150,12 @@ def time_holding(name: str, operand: Condition, kept: str, step: Expression, uni
 
 def total_time(name: str, operand: Condition, step: Expression, unit: str) -> RegisterDraft:
     """Return the register of ``total_time(p)``: the lengths of all samples with p together."""
-    update = When(((operand, Op("+", (Before(name), step))),), Before(name))
-    return RegisterDraft(name, "total_time", unit, 0.0, None, 0.0, update)
+    return RegisterDraft(name, "total_time", unit, 0.0, None, 0.0, added(operand, Before(name), step))
+
+
+def added(operand: Condition, before: Expression, step: Expression) -> Expression:
+    """Return a time ``before`` this sample and, if p holds, the length of its step."""
+    return When(((operand, Op("+", (before, step))),), before)
 
 
 def total_time_since(name: str, operand: Condition, event: Condition, step: Expression, unit: str) -> RegisterDraft:

@@ -26,12 +26,15 @@ MEMORY_FUNCTIONS = (
     "time_holding",
     "total_time",
     "total_time_since",
+    "total_time_within",
     "previous",
     "initial",
     "highest",
     "lowest",
     "highest_since",
     "lowest_since",
+    "highest_within",
+    "lowest_within",
     "value_at",
 )
 """The functions of the trace so far. A declaration may take the name of one: then the name means the declaration."""

@@ -6,7 +6,7 @@ from typing import Final
 
 from tltlc.diagnostics.diagnostic import Fix, replacement_fix
 from tltlc.grammar.past_words import FUNCTIONS, PastWord
-from tltlc.grammar.tree import CallExpr, Expr, GroupExpr, NameExpr, SignalDecl
+from tltlc.grammar.tree import CallExpr, Expr, GroupExpr, NameExpr, NumberExpr, SignalDecl
 from tltlc.resolve.values import Env
 
 _CHANGES: Final = ("changed", "changes", "change", "has_changed", "did_change")
@@ -18,6 +18,12 @@ _AGGREGATES: Final = frozenset("mean average avg median sum integral std varianc
 _WINDOWS: Final = frozenset("within window last past recent over sliding".split())
 _PUT_TOGETHER: Final = frozenset("highest lowest max min maximum minimum peak total time duration held".split())
 """With a word for a window, these are functions of the last seconds: `total_time_within`, `max_in_last`."""
+_OF_WINDOWS: Final = {
+    "highest_within": frozenset(("highest", "max", "maximum", "peak")),
+    "lowest_within": frozenset(("lowest", "min", "minimum")),
+    "total_time_within": frozenset(("time", "duration", "held")),
+}
+"""Words in other names of the functions of the last seconds."""
 _MOST_NAMED: Final = 2
 """The most functions that a help names with their meaning."""
 
@@ -33,7 +39,9 @@ def function_help(call: CallExpr, env: Env) -> tuple[str, tuple[Fix, ...]] | Non
     if written is not None:
         return f"write `{written}`", (replacement_fix(env.scope.source, call.span, written),)
     if _is_of_window(call):
-        return _window_help(call, env), ()
+        known = _known_within(call, env)
+        fixes = (replacement_fix(env.scope.source, call.span, known),) if known else ()
+        return (f"write `{known}`", fixes) if known else (_window_help(call, env), ())
     near = _near(call.name)
     if near:
         return "; or ".join(f"`{word.forms[0]}` may be meant: {word.meaning.rstrip('.')}" for word in near), ()
@@ -47,18 +55,25 @@ def _is_of_window(call: CallExpr) -> bool:
     return bool(words & _AGGREGATES or (words & _WINDOWS and words & _PUT_TOGETHER))
 
 
+def _known_within(call: CallExpr, env: Env) -> str:
+    """Return `highest_within(x, 5 s)` for a function of the same under another name, else ""."""
+    words = set(call.name.lower().split("_"))
+    length = call.arguments[1].value if len(call.arguments) == 2 else None
+    name = next((name for name, others in _OF_WINDOWS.items() if words & others), "")
+    if not name or words & _AGGREGATES or not isinstance(length, NumberExpr) or length.unit is None:
+        return ""
+    return f"{name}({', '.join(env.scope.source.slice(argument.value.span) for argument in call.arguments)})"
+
+
 def _window_help(call: CallExpr, env: Env) -> str:
     argument, name = call.arguments[0].value, call.name.lower()
     of = argument.name if isinstance(argument, NameExpr) else ""
     signal = f"{of}_{name}" if of else name
     is_time = "time" in name or "duration" in name or "held" in name
-    if is_time:
-        limit = (
-            "no function adds up the time of p in the last seconds (`total_time_since(p, q)` adds it up since an event "
-            "q, and `times_within(p, 5 s)` counts how often p begins in the last 5 s)"
-        )
-    else:
-        limit = "no function puts the values of several steps together (`highest_since(x, q)` is the greatest since q)"
+    limit = (
+        "no function puts the values of several steps together but `highest_within(x, 5 s)`, `lowest_within(x, 5 s)` "
+        "and `total_time_within(p, 5 s)`"
+    )
     range_ = ": time in [0 s, 60 s]" if is_time else _range_text(of, env) or " in [0, 100]"
     return f"{limit}: let the game record that number as a signal, such as `signal {signal}{range_}`, and compare that"
 

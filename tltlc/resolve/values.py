@@ -46,6 +46,7 @@ class Recall:
     is_count: bool
     is_whole: bool = True
     limit: Label | None = None
+    most: float | None = None
     window: Window | None = None
 
 

@@ -146,8 +146,23 @@ def _events_case() -> ConformanceCase:
     return ConformanceCase(fspa, "Counts, times and values since an event.", traces, text)
 
 
+def _last_seconds_case() -> ConformanceCase:
+    """Return a case with values and times of the last seconds."""
+    text = f"""\
+{_DECLARATIONS}spec last_seconds {{
+    keep x >= highest_within(x, 0.5 s) - 0.75 or y > previous(y, 3 steps)
+    keep total_time_within(a, 0.5 s) <= 0.25 s or total_time_within(b or c, 4 steps) >= 0.2 s
+    require always eventually (lowest_within(x + y / 2, 2 steps) > previous(x, 0.25 s) or d)
+}}
+"""
+    fspa, draw = _compiled("last_seconds", text), Draw(9010)
+    traces = tuple(lively_trace(fspa, draw, length, _POOLS) for length in (20, 30, 40))
+    return ConformanceCase(fspa, "Values and times of the last seconds.", traces, text)
+
+
 CASES: Final[CaseBuilders] = {
     **{f"random_memory_{n}": partial(_random_case, f"random_memory_{n}", 9000 + n) for n in range(1, 9)},
     "since_events": _events_case,
+    "last_seconds": _last_seconds_case,
     "no_memory": _rejected_case,
 }
