@@ -67,9 +67,35 @@ HELPS = {
         "write `keep fire and previously fire implies health >= previous(health)` within each `fire`, "
         "or `keep fire implies health >= previous(health)` also from the step before it begins"
     ),
-    "coins must not drop by more than 3 within 1 s": (
-        "write `keep coins >= previous(coins, 1 s) - 3` "
-        "if `coins` is compared with what it was 1 s before, whatever it was in between"
+    "coins must not drop by more than 3 within 1 s": "write `keep coins >= highest_within(coins, 1 s) - 3`",
+    "coins rises by at most 3 in any 2 s": "write `keep coins <= lowest_within(coins, 2 s) + 3`",
+    "keep coins >= highest coins in the last 5 s - 3": "write `keep coins >= highest_within(coins, 5 s) - 3`",
+    "whenever fire, coins rises by at least 3 within 0.3 s": (
+        "write `keep fire implies eventually within 0.3 s coins >= value_at(coins, fire) + 3` "
+        "if it is compared with its value at `fire`, "
+        "or `keep fire implies eventually within 0.3 s coins >= previous(coins) + 3` "
+        "if it must change so much from one step to the next"
+    ),
+    "keep coins at most twice lap": "write `keep coins <= 2 * lap`",
+    # The first, the second and further ones.
+    "fire within 60 s after the first spray": "write `keep begins (once spray) implies eventually within 60 s fire`",
+    "after the second spray, no fire": "write `keep begins (times(spray) >= 2) implies always not fire`",
+    "no fire until the third spray": "write `require not fire weak_until begins (times(spray) >= 3)`",
+    "fire only after the second spray": "write `keep fire implies times(spray) >= 2`",
+    # Several conditions, and several times.
+    "while phase is menu, never fire, spray or boss_dead": (
+        "write `keep phase is menu implies not (fire or spray or boss_dead)`"
+    ),
+    "when phase is menu, no fire, no spray and no boss_dead": (
+        "write `keep phase is menu implies not fire and not spray and not boss_dead`"
+    ),
+    "keep begins fire implies fire for at least 2 s and at most 4 s": (
+        "write `keep begins fire implies always for 2 s fire` and "
+        "`keep begins fire implies eventually within 4 s not fire`"
+    ),
+    "keep fire implies spray at least every 10 s": (
+        "write `keep time_holding(fire and not spray) < 10 s` if play may end in the middle of that time, "
+        "or `keep fire implies eventually within 10 s (spray or not fire)` if play must not end before `spray`"
     ),
     "keep coins >= coins 1 s ago - 3": "write `keep coins >= previous(coins, 1 s) - 3`",
     "health is never below 20 for more than 10 s": "write `avoid time_holding(health < 20) > 10 s`",

@@ -36,12 +36,10 @@ def test_a_time_of_the_first_rule_may_be_for_all_or_for_the_first_alone() -> Non
 @pytest.mark.parametrize(
     ("typed", "signal"),
     [
-        ("keep fire for at most 10 s in any 60 s", "fire_time: time in [0 s, 60 s]"),
-        ("never fire for more than 10 s in total in any 60 s", "fire_time: time in [0 s, 60 s]"),
-        ("at most 10 s of fire within any 60 s", "fire_time: time in [0 s, 60 s]"),
+        ("keep fire for at most 10 s in any 90 s", "fire_time: time in [0 s, 60 s]"),
         ("the average of health over 60 s is at most 5", "health_mean in [0, 100]"),
         ("the mean health over the last 60 s must be below 50", "health_mean in [0, 100]"),
-        ("health changes by at most 5 in any 3 s", "health_change in [-100, 100]"),
+        ("health changes by at most 5 in any 90 s", "health_change in [-100, 100]"),
         ("while fire, health rises by at least 20 every 15 s", "recent_change in [-100, 100]"),
     ],
 )
@@ -57,6 +55,14 @@ def test_what_needs_all_values_of_a_window_is_for_the_game_to_record(typed: str,
     ("typed", "clause"),
     [
         ("health changes by at most 5 per step", "keep abs(health - previous(health)) <= 5"),
+        (
+            "health changes by at most 5 in any 3 s",
+            "keep highest_within(health, 3 s) - lowest_within(health, 3 s) <= 5",
+        ),
+        ("health never falls by more than 5 in 30 s", "keep health >= highest_within(health, 30 s) - 5"),
+        ("keep fire for at most 10 s in any 60 s", "keep total_time_within(fire, 60 s) <= 10 s"),
+        ("never fire for more than 10 s in total in any 60 s", "keep total_time_within(fire, 60 s) <= 10 s"),
+        ("at most 10 s of fire within any 60 s", "keep total_time_within(fire, 60 s) <= 10 s"),
         ("at most 3 fire in any 5 s", "keep times_within(fire, 5 s) <= 3"),
     ],
 )

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from typing import Final
 
+from tltlc.core.record import replace
 from tltlc.grammar.english.answers import Asked
 from tltlc.grammar.english.events import Event, Held, as_state
 from tltlc.grammar.english.quantities import Change, Duration, Number, begun, comparison
@@ -96,10 +98,31 @@ class Changes(Rules):
         return state
 
     def first(self, when: When, event: Event, answers: list[Asked]) -> _Found:
-        return self._same_while(when, event, answers) or super().first(when, event, answers)
+        same = self._same_while(when, event, answers)
+        return same or self._changed_since(event, answers, lambda asked: super(Changes, self).first(when, event, asked))
 
     def last(self, answers: list[Asked], when: When, event: Event) -> _Found:
-        return self._same_while(when, event, answers) or super().last(answers, when, event)
+        same = self._same_while(when, event, answers)
+        return same or self._changed_since(event, answers, lambda asked: super(Changes, self).last(asked, when, event))
+
+    def implies(self, event: Event, answers: list[Asked]) -> _Found:
+        return self._changed_since(event, answers, lambda asked: super(Changes, self).implies(event, asked))
+
+    def _changed_since(self, event: Event, answers: list[Asked], rule: Callable[[list[Asked]], _Found]) -> _Found:
+        """Return the rule; `when a, b rises by 3 within 2 s` may be about one step, or about all since a."""
+        state, answer = as_state(event), answers[0].answer
+        made, found = self.changes_by_amounts.get(answer.state.text), rule(answers)
+        if made is None or state is None or answer.kind != "within" or answers[1:]:
+            return found
+        since = made.compared_with(f"value_at({made.term.text}, {state.text})")
+        whole = None if since is None else _only(rule([replace(answers[0], answer=replace(answer, state=since))]))
+        of_step = _only(found)
+        if whole is None or of_step is None:
+            return found
+        return [
+            replace(whole, condition=f"if it is compared with its value at `{state.text}`"),
+            replace(of_step, condition="if it must change so much from one step to the next"),
+        ]
 
     def implied(self, event: Event, answers: list[Asked]) -> _Found:
         same = None if self.is_again else self._same_while("while", event, answers)
@@ -293,3 +316,9 @@ class Changes(Rules):
 def _all(states: list[State | None]) -> State | None:
     known = [state for state in states if state is not None]
     return joined(known, "and") if len(known) == len(states) else None
+
+
+def _only(found: _Found) -> Reading | None:
+    """Return the reading of a rule that has one."""
+    readings = found if isinstance(found, list) else [] if found is None else [found]
+    return readings[0] if len(readings) == 1 and not readings[0].condition else None

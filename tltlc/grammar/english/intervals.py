@@ -166,6 +166,9 @@ class Intervals(Rules):
     def while_at_least_every(self, when: When, event: Event, every: Every) -> _Found:
         return self.at_least_every_while(every, when, event)
 
+    def implied_every(self, event: Event, every: Every) -> _Found:
+        return self.at_least_every_while(every, "while", event)
+
     def never_long_without(self, sign: str, duration: Duration, state: State) -> _Found:
         return never_held(Held(state.negated(), ">", duration)) if sign == "<=" else None
 
@@ -236,6 +239,13 @@ class Intervals(Rules):
     def apart_beginnings(self, duration: Duration, one: Term, other: Term) -> _Found:
         begun = f"(begins {one.text})"
         return Reading((f"avoid {begun} then within {duration.text} {begun}",)) if one.text == other.text else None
+
+    def apart_behind(self, *found: Term | State | Duration) -> _Found:
+        """Return the readings of `a at least 5 s apart`."""
+        *rest, duration = found
+        assert isinstance(duration, Duration)
+        states = [state for state in rest if isinstance(state, State)]
+        return self.apart(duration, *(part for part in rest if not isinstance(part, Duration)), *states)
 
     def apart(self, duration: Duration, *found: Term | State) -> _Found:
         states = [state for state in found if isinstance(state, State)]

@@ -133,6 +133,16 @@ class LaterTimes(Rules):
         self._lasted[held.text] = state
         return Asked(Answer("now", held), f"if `{state.text}` must have held for so long by then")
 
+    def lasting_from_to(self, state: State, least: Duration, most: Duration) -> list[list[Asked]] | None:
+        """Return both answers of `when a, b for at least 2 s and at most 4 s`, from the step of a on."""
+        state = self.settled.get(state.text, state)
+        if is_edge(state) or state.level > ATOM or self.steps(least) > self.steps(most):
+            return None
+        return [[self.lasting(state, least), Asked(Answer("within", state.negated(), most.text))]]
+
+    def lasting_for_durations(self, state: State, durations: Window) -> list[list[Asked]] | None:
+        return self.lasting_from_to(state, *durations)
+
     def implies(self, event: Event, answers: list[Asked]) -> _Found:
         """Return the rule; what has only begun has not held for a time."""
         begun, lasted = as_state(event), self._lasted.get(answers[0].answer.state.text)

@@ -56,6 +56,24 @@ class Duration:
         return f"{self.number} {self.unit}"
 
 
+@record
+class ChangeBy:
+    """By how much a number falls or rises."""
+
+    term: Term
+    change: Change
+    sign: str
+    step: Number
+
+    def compared_with(self, before: str) -> State | None:
+        """Return the condition that the number has changed so much since it had the value ``before``."""
+        operator = "-" if self.change == "falls" else "+"
+        is_exact = self.step.is_int or self.step.term is None
+        kind = self.term if is_exact else Term("REAL", self.term.text)
+        now, then = Number(self.term.text, kind), Number(f"{before} {operator} {self.step.text}", kind)
+        return _change(now, MIRRORED[self.sign] if self.change == "falls" else self.sign, then)
+
+
 class Quantities:
     """The meanings of the rules for numbers, conditions, and what lasts or is counted.
 
@@ -85,6 +103,8 @@ class Quantities:
         """Maps the conditions of numbers that return to a value to the event at which they had it."""
         self.changing: set[str] = set()
         """The conditions that a number changes, which no first step meets."""
+        self.changes_by_amounts: dict[str, ChangeBy] = {}
+        """Maps the texts of conditions such as `coins rises by at least 3` to these."""
 
     def steps(self, duration: Duration) -> float:
         """Return how many steps a time takes; 0 if that is not known."""
@@ -102,6 +122,15 @@ class Quantities:
         if unit is not None and unit.text in ("step", "steps"):
             return None
         return Number(number.text if unit is None else f"{number.text} {unit.text}")
+
+    def multiple(self, number: Term, term: Term) -> Number:
+        return Number(f"{number.text} * {term.text}", term)
+
+    def double(self, term: Term) -> Number:
+        return Number(f"2 * {term.text}", term)
+
+    def half(self, term: Term) -> Number:
+        return Number(f"{term.text} / 2", Term("REAL", term.text))
 
     def previous(self, term: Term) -> Number:
         return Number(f"previous({term.text})", term)
@@ -301,10 +330,11 @@ class Quantities:
     def changes_by_compared(self, term: Term, change: Change, sign: str, step: Number) -> State | None:
         if change not in ("falls", "rises") or sign in ("<", "<="):
             return None  # a change by at most that much is none, too
-        operator = "-" if change == "falls" else "+"
-        kind = term if step.is_int or step.term is None else Term("REAL", term.text)
-        now, then = Number(term.text, kind), Number(f"previous({term.text}) {operator} {step.text}", kind)
-        return _change(now, MIRRORED[sign] if change == "falls" else sign, then)
+        made = ChangeBy(term, change, sign, step)
+        state = made.compared_with(f"previous({term.text})")
+        if state is not None:
+            self.changes_by_amounts[state.text] = made
+        return state
 
 
 def begun(event: State) -> State:

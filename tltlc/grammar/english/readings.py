@@ -16,6 +16,7 @@ from tltlc.grammar.english.exceptions import Exceptions
 from tltlc.grammar.english.extremes import Extremes
 from tltlc.grammar.english.forms import Form, Part, forms
 from tltlc.grammar.english.later_times import LaterTimes
+from tltlc.grammar.english.ordinals import Ordinals
 from tltlc.grammar.english.periods import Periods
 from tltlc.grammar.english.rules import Reading, Rules
 from tltlc.grammar.english.sentence_parser import SentenceParser, sentence_parser
@@ -66,6 +67,7 @@ class Meanings(
     Alternatives,
     CountsSince,
     TwoEvents,
+    Ordinals,
     TimedAnswers,
     LaterTimes,
     Windows,

@@ -10,6 +10,7 @@ from tltlc.grammar.english.quantities import Change, Duration, Number, begun
 from tltlc.grammar.english.rules import Reading, When
 from tltlc.grammar.english.terminals import Term
 from tltlc.grammar.mistakes.sentences.states import ATOM, OR, State, joined
+from tltlc.grammar.past_words import MOST_STEPS_BACK
 
 _Found = Reading | list[Reading] | None
 
@@ -17,15 +18,25 @@ _Found = Reading | list[Reading] | None
 class Windows(Differences):
     """The meanings of the rules about the start and the end of play, and about windows of time."""
 
-    def time_in_window(self, state: State, sign: str, time: Duration, window: Duration) -> None:
-        self._let_game_record(
-            f"adds up the time of `{state.text}` in the {window.text} up to a step "
-            f"(`times_within({state.text}, {window.text})` counts how often it begins)",
-            f"{_name(state.text)}_time: time in [0 s, 60 s]",
-        )
+    def time_in_window(self, state: State, sign: str, time: Duration, window: Duration) -> Reading | None:
+        """Return the rule of `a for at most 2 s in any 10 s`."""
+        if not 0 < self.steps(window) <= MOST_STEPS_BACK:
+            self._let_game_record(
+                f"adds up the time of `{state.text}` in the {window.text} up to a step, unless these are "
+                f"{MOST_STEPS_BACK} steps or less "
+                f"(`times_within({state.text}, {window.text})` counts how often it begins)",
+                f"{_name(state.text)}_time: time in [0 s, 60 s]",
+            )
+            return None
+        if time.is_steps or sign not in ("<", "<="):
+            return None
+        return Reading((f"keep total_time_within({state.text}, {window.text}) {sign} {time.text}",))
 
-    def time_first_in_window(self, sign: str, time: Duration, state: State, window: Duration) -> None:
-        self.time_in_window(state, sign, time, window)
+    def avoid_time_in_window(self, state: State, sign: str, time: Duration, window: Duration) -> Reading | None:
+        return self.time_in_window(state, {">": "<=", ">=": "<"}.get(sign, ""), time, window)
+
+    def time_first_in_window(self, sign: str, time: Duration, state: State, window: Duration) -> Reading | None:
+        return self.time_in_window(state, sign, time, window)
 
     def times_in_window(self, count: Term, sign: Term, number: Term, window: Duration) -> State | None:
         """Return the condition of `times(a) >= 3 within 5 s`."""
@@ -72,18 +83,22 @@ class Windows(Differences):
         return self.when_count_within("after", event, counted, window)
 
     def change_in_window(self, difference: Difference, window: Duration) -> Reading | None:
-        """Return the rule of `health falls by at most 5 in 3 s`, which compares it with the value 3 s before alone."""
-        value, name = self.value_before(difference.term, window), difference.term.text
-        if value is None or difference.change not in ("falls", "rises") or difference.sign not in ("<", "<="):
-            before = "" if value is None else f" (`{value.text}` is the value {window.text} before)"
+        """Return the rule of `health falls by at most 5 in 3 s`, which compares it with the highest value in them."""
+        name, change = difference.term.text, difference.change
+        is_short = 0 < self.steps(window) <= MOST_STEPS_BACK
+        if is_short and change == "varies" and difference.sign in ("<", "<="):
+            ends = (f"{extreme}_within({name}, {window.text})" for extreme in ("highest", "lowest"))
+            return Reading((f"keep {' - '.join(ends)} {difference.sign} {difference.step.text}",))
+        if not is_short or change not in ("falls", "rises") or difference.sign not in ("<", "<="):
+            before = f" (`previous({name}, {window.text})` is the value {window.text} before)" if is_short else ""
             what = f"says by how much `{name}` changes in {window.text}{before}"
             self._let_game_record(what, f"{_name(name)}_change in [-100, 100]")
             return None
+        extreme = "highest" if change == "falls" else "lowest"
+        before = f"previous({name})" if self.steps(window) == 1 else f"{extreme}_within({name}, {window.text})"
+        value = Number(before, difference.term)
         rule = changed(difference, value)
-        if rule is None:
-            return None
-        condition = f"if `{name}` is compared with what it was {window.text} before, whatever it was in between"
-        return Reading((f"keep {rule.text}",), "" if self.steps(window) == 1 else condition)
+        return None if rule is None else Reading((f"keep {rule.text}",))
 
     def avoid_change_in_window(self, difference: Difference, window: Duration) -> Reading | None:
         sign = {">": "<=", ">=": "<"}.get(difference.sign, "")
@@ -91,6 +106,16 @@ class Windows(Differences):
 
     def cannot_change_within(self, term: Term, change: Change, sign: str, step: Number, window: Duration) -> _Found:
         return self.avoid_change_in_window(Difference(term, change, sign, step), window)
+
+    def highest_in(self, term: Term, window: Duration) -> Number | None:
+        return self._extreme_in("highest", term, window)
+
+    def lowest_in(self, term: Term, window: Duration) -> Number | None:
+        return self._extreme_in("lowest", term, window)
+
+    def _extreme_in(self, extreme: str, term: Term, window: Duration) -> Number | None:
+        is_short = self.value_before(term, window) is not None
+        return Number(f"{extreme}_within({term.text}, {window.text})", term) if is_short else None
 
     def mean_of(self, term: Term, *windows: Duration) -> None:
         self._let_game_record(f"takes the mean of `{term.text}`", f"{_name(term.text)}_mean in [0, 100]")

@@ -193,7 +193,7 @@ def _may_miss(failure: ParseFailure, fix: Fix, words: Words) -> bool:
     is_new = "times(" not in words.text
     is_counted = is_new and "times(" in answer and " <= " in answer
     is_joined = is_new and text.startswith("keep times(") and " and " in text
-    is_compared = " implies always " in text and "previous(" in text
+    is_compared = (" implies always " in text or " implies eventually within " in text) and "previous(" in text
     is_same = words.find(LASTING) is not None and keeps_values(text.partition(" implies ")[2])
     is_denied = " implies always for " in text and " not " in text and words.find(phrases("after")) is not None
     return (

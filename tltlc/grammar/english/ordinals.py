@@ -1,0 +1,24 @@
+"""What the first, the second and further ones of an event mean: `no a until the third b`, `after the first b, c`."""
+
+from __future__ import annotations
+
+from tltlc.grammar.english.rules import Reading, Rules, are_simple
+from tltlc.grammar.mistakes.sentences.states import ATOM, OR, State
+
+
+class Ordinals(Rules):
+    """The meanings of events that are counted from the first step on."""
+
+    def first_of_all(self, state: State) -> State | None:
+        """Return the step of `the first a`; a later a is none."""
+        return State(f"begins (once {state.at(ATOM)})") if are_simple(state) else None
+
+    def nth_of_all(self, number: str, state: State) -> State | None:
+        """Return the step of `the third a`."""
+        return State(f"begins (times({state.text}) >= {number})") if are_simple(state) else None
+
+    def only_after_nth(self, state: State, number: str, event: State) -> Reading | None:
+        """Return the rule of `a only after the third b`: that step, or a later one."""
+        if not are_simple(state, event):
+            return None
+        return Reading((f"keep {state.at(OR)} implies times({event.text}) >= {number}",))
