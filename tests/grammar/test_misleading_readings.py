@@ -57,6 +57,12 @@ HELPS = {
     "require not fire until within 3 s spray": (
         "write `require eventually within 3 s spray` and `require not fire until spray`"
     ),
+    "keep begins fire implies not fire before begins phase is shift": (
+        "write `keep begins fire implies (not begins (phase is shift) weak_until not fire)` "
+        "if `not fire` must come before `begins (phase is shift)`, or with it, or "
+        "`keep begins fire implies weak_next (not begins fire weak_until begins (phase is shift))` "
+        "if `fire` must not begin again before `begins (phase is shift)`"
+    ),
     # Values of the step before, or of some time ago.
     "keep fire implies coins and lap unchanged": (
         "write `keep fire and previously fire implies coins == previous(coins) and lap == previous(lap)` "
@@ -106,6 +112,18 @@ HELPS = {
 def test_the_help_has_the_readings(typed: str) -> None:
     left = errors(SourceFile("a.tltl", f"{HEAD}spec s {{\n{typed}\n}}\n"))
     assert [(error.help or "").splitlines()[0] for error in left] == [HELPS[typed]]
+
+
+def test_at_least_every_says_how_far_apart_two_may_be() -> None:
+    (error,) = errors(SourceFile("a.tltl", f"{HEAD}spec s {{\nspray at least every 6 s\n}}\n"))
+    note = "it counts from the step after each: two may be 6.1 s apart; write `< 5.9 s` if 6 s is the most"
+    assert (error.help or "").splitlines()[1:] == [note]
+    for time, most in (("6 s", 61), ("5.9 s", 60)):
+        (fspa,) = compile_text(f"clock 10 Hz\nsignal spray: bool\nspec s {{ keep time_holding(not spray) < {time} }}")
+        for steps, is_kept in ((most, True), (most + 1, False)):
+            monitor = Monitor(fspa)
+            verdicts = [monitor.step({"spray": step in (0, steps)}).verdict for step in range(steps + 1)]
+            assert ("violated" not in verdicts) == is_kept
 
 
 def test_two_events_so_far_apart_are_said_to_be_forbidden() -> None:

@@ -81,6 +81,15 @@ def test_a_function_of_the_last_seconds_has_a_name(call: str, known: str) -> Non
     assert [edit.text for edit in error.fixes[0].edits] == [known]
 
 
+@pytest.mark.parametrize(
+    ("call", "said"),
+    [("time_between(a, a)", "`avoid a then within 3 s a`"), ("gap(begins a, a)", "`time_since(begins a)`")],
+)
+def test_the_time_between_two_events_is_no_function(call: str, said: str) -> None:
+    error = first_error(f"{HEAD}spec s {{ keep {call} >= 3 s }}")
+    assert said in (error.help or "")
+
+
 def test_a_call_that_is_like_no_function_gets_a_list_of_them() -> None:
     error = first_error(f"{HEAD}spec s {{ keep foo(a, x > 3) <= 3 }}")
     assert error.title == "there is no function `foo`"

@@ -24,6 +24,8 @@ _OF_WINDOWS: Final = {
     "total_time_within": frozenset(("time", "duration", "held")),
 }
 """Words in other names of the functions of the last seconds."""
+_BETWEEN: Final = frozenset(("between", "apart", "gap", "interval"))
+"""Words in the names of functions for the time between two events."""
 _MOST_NAMED: Final = 2
 """The most functions that a help names with their meaning."""
 
@@ -42,11 +44,32 @@ def function_help(call: CallExpr, env: Env) -> tuple[str, tuple[Fix, ...]] | Non
         known = _known_within(call, env)
         fixes = (replacement_fix(env.scope.source, call.span, known),) if known else ()
         return (f"write `{known}`", fixes) if known else (_window_help(call, env), ())
+    apart = _apart_help(call, env)
+    if apart:
+        return apart, ()
     near = _near(call.name)
     if near:
         return "; or ".join(f"`{word.forms[0]}` may be meant: {word.meaning.rstrip('.')}" for word in near), ()
     forms = ", ".join(f"`{word.forms[0]}`" for word in FUNCTIONS.values())
     return f"the functions of the trace so far are {forms}; p and q are true or false, and x is a number", ()
+
+
+def _apart_help(call: CallExpr, env: Env) -> str:
+    """Return the help for `time_between(a, b)`, the time between two events; "" for other functions."""
+    words, count = set(call.name.lower().split("_")), len(call.arguments)
+    if not words & _BETWEEN or count not in (1, 2):
+        return ""
+    first, second = (env.scope.source.slice(call.arguments[at].value.span) for at in (0, count - 1))
+    if first == second:
+        event = first if first.isidentifier() else f"({first})"
+        return (
+            f"no function is the time between two `{first}`: for more than 3 s between them, write "
+            f"`avoid {event} then within 3 s {event}`, and for less `keep time_holding(not {event}) < 3 s`"
+        )
+    return (
+        f"no function is the time between `{first}` and `{second}`: at `{second}`, `time_since({first})` is the time "
+        "since the last step with it"
+    )
 
 
 def _is_of_window(call: CallExpr) -> bool:

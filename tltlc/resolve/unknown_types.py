@@ -24,18 +24,22 @@ Typed = Union[tree.Parameter, tree.SignalDecl, tree.ParamDecl]
 _TYPES_ELSEWHERE: Final = {
     **dict.fromkeys(("float", "double", "real"), "number"),
     "integer": "int",
-    "boolean": "bool",
+    **dict.fromkeys(("boolean", "flag", "event", "trigger", "pulse"), "bool"),
     "distance": "length",
     "duration": "time",
     "velocity": "speed",
 }
 """Maps names of types in other languages to the types of this language."""
+_EVENTS: Final = ("event", "trigger", "pulse")
+"""Names of types for what happens at single steps."""
 
 
 def unknown_type_error(name: str, at: Typed, source: SourceFile) -> ResolutionError:
     """Return the error (TLT0211) for a type that the language does not have."""
     suggestion = _meant_type(name)
     advice = f"did you mean `{suggestion}`?" if suggestion else f"the types are {', '.join(_KNOWN)}"
+    if name.lower() in _EVENTS:
+        advice = "write `bool`: true at each step at which it happens"
     if suggestion is None and isinstance(at, tree.SignalDecl):
         advice += ", or a list of values: `(idle, alert)`"
     if name.lower() == "enum" and isinstance(at, tree.SignalDecl):

@@ -117,19 +117,27 @@ class Again(Sequels):
             if not self.is_before or until is None:
                 return again
             kept, end = until
-            first = f"({end.negated().at(ATOM)} weak_until {kept.at(ATOM)})"
-            return [
-                Reading(
-                    (f"keep {state.at(OR)} implies {first}",),
-                    f"if `{kept.text}` must come before `{end.text}`, or with it",
-                ),
-                replace(again, condition=f"if `{kept.negated().text}` must not hold again before `{end.text}`"),
-            ]
+            not_again = replace(again, condition=f"if `{kept.negated().text}` must not hold again before `{end.text}`")
+            return [_ended_before(state, kept, end), not_again]
         if state is None or until is None or answers[1:] or not are_simple(state):
             return None
-        if begun_text(until[0].negated()) != begun_text(state):
+        kept, end = until
+        if begun_text(kept.negated()) != begun_text(state):
             return None
-        return _not_again_until(state, until[1])
+        readings = _not_again_until(state, end)
+        if not self.is_before or not state.text.startswith("begins ") or len(readings) != 1:
+            return readings
+        not_again = replace(
+            readings[0], condition=f"if `{kept.negated().text}` must not begin again before `{end.text}`"
+        )
+        return [_ended_before(state, kept, end), not_again]
+
+
+def _ended_before(event: State, kept: State, end: State) -> Reading:
+    """Return the rule of `when a begins, not a before b`, if it asks for the end of a."""
+    first = f"({end.negated().at(ATOM)} weak_until {kept.at(ATOM)})"
+    condition = f"if `{kept.text}` must come before `{end.text}`, or with it"
+    return Reading((f"keep {event.at(OR)} implies {first}",), condition)
 
 
 def _not_again_until(state: State, end: State) -> list[Reading]:

@@ -36,6 +36,8 @@ class Conditions(Quantities):
         """Whether the sentence says `comes`."""
         self._since: dict[str, tuple[State, State]] = {}
         """Maps the texts of conditions such as `a since the last b` to a and b."""
+        self.listed: set[str] = set()
+        """The conditions such as `a, b or c`."""
         self._recent: dict[str, tuple[State, Duration]] = {}
         """Maps the texts of conditions such as `a in the last 5 s` to a and the time."""
         self.varying: set[str] = set()
@@ -184,6 +186,12 @@ class Conditions(Quantities):
 
     def all_of(self, *events: Event) -> list[State]:
         return self._of_all(events, "and")
+
+    def any_listed(self, *events: Event) -> list[State]:
+        """Return the condition of `a, b or c`; alone behind `keep` or `reach`, a comma may join what comes in turn."""
+        states = self.any_of(*events)
+        self.listed |= {state.text for state in states}
+        return states
 
     def any_of(self, *events: Event) -> list[State]:
         return self._of_all(events, "or")

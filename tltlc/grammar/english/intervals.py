@@ -155,7 +155,9 @@ class Intervals(Rules):
 
     def at_least_every_while(self, every: Every, when: When, event: Event) -> _Found:
         condition = as_state(event)
-        if condition is None or when not in ("when", "while", "as long as") or max(condition.level, every.state.level):
+        if condition is None or when not in ("when", "while", "as long as"):
+            return None
+        if condition.level > AND or every.state.level > ATOM:
             return None
         duration = every.duration
         weak = _never_so_long(joined([condition, every.state.negated()], "and"), duration)

@@ -118,6 +118,21 @@ def _apart_note(rule: Expr, source: SourceFile, step_s: float) -> str:
     return f"{source.slice(longest.span)} after the first is forbidden, too: write {shorter} if it is allowed"
 
 
+def _every_note(comparison: Expr, source: SourceFile, step_s: float) -> str:
+    """Return how far apart `time_holding(not a) < 6 s` lets two a be; "" for other formulas."""
+    if not isinstance(comparison, BinaryExpr) or comparison.op != "<" or not _is_held(comparison.left):
+        return ""
+    limit = comparison.right
+    steps = _steps(limit, step_s) if isinstance(limit, NumberExpr) else 0.0
+    if not isinstance(limit, NumberExpr) or not 2 < steps <= _MOST_STEPS or steps != int(steps):
+        return ""
+    longest, shorter = (round(limit.value * (1 + more / steps), 6) for more in (1, -1))
+    return (
+        f"it counts from the step after each: two may be {longest:g} {limit.unit} apart; write "
+        f"`< {shorter:g} {limit.unit}` if {source.slice(limit.span)} is the most"
+    )
+
+
 def _window_note(call: CallExpr, source: SourceFile, step_s: float) -> str:
     """Return at which steps `times_within(p, 2 s)` counts; nothing where steps differ in length."""
     length = call.arguments[1].value if len(call.arguments) > 1 else None
@@ -179,6 +194,8 @@ def reading_notes(clauses: str, names: DeclaredNames, typed: str) -> tuple[str, 
         times = [_of_time(part, source, names.step_s) for part in compared if _is_held(part.left)]
     if source is not None and "then within" not in typed:
         times += [_apart_note(part, source, names.step_s) for part in _parts_of(specs)]
+    if source is not None and "every" in typed:
+        times += [_every_note(part, source, names.step_s) for part in _parts_of(specs)]
     return (*equality_notes(clauses, typed), *dict.fromkeys(note for note in times if note))
 
 

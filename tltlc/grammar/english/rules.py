@@ -106,7 +106,8 @@ class Rules(Answers):
         return Reading((f"keep {term.text} {relation} previous({term.text}) {operator} {step.text}",))
 
     def keep(self, state: State) -> _Found:
-        if state.text in self.changing or self.count_condition(state.text) or state.text.startswith("time_holding("):
+        is_later = state.text in self.changing or state.text.startswith("time_holding(")
+        if is_later or state.text in self.listed or self.count_condition(state.text):
             return None  # the first step has no value before, and no time
         return Reading((f"keep {state.text}",))
 
@@ -152,6 +153,8 @@ class Rules(Answers):
         return Reading((f"keep begins {state.at(ATOM)} implies {formula.text}",))
 
     def reach(self, goals: Goals) -> _Found:
+        if any(goal.text in self.listed for goal in goals.states):
+            return None
         return Reading((f"reach {' then '.join(goal.at(OR) for goal in goals.states)}",), goals.condition)
 
     def reach_within(self, event: Event, duration: Duration) -> _Found:
