@@ -63,6 +63,12 @@ HELPS = {
         "`keep begins fire implies weak_next (not begins fire weak_until begins (phase is shift))` "
         "if `fire` must not begin again before `begins (phase is shift)`"
     ),
+    "never more than one of fire, spray and boss_dead": (
+        "write `avoid fire and spray` and `avoid fire and boss_dead` and `avoid spray and boss_dead`"
+    ),
+    "at most one of fire, spray and boss_dead at a time": (
+        "write `avoid fire and spray` and `avoid fire and boss_dead` and `avoid spray and boss_dead`"
+    ),
     # Values of the step before, or of some time ago.
     "keep fire implies coins and lap unchanged": (
         "write `keep fire and previously fire implies coins == previous(coins) and lap == previous(lap)` "

@@ -199,6 +199,13 @@ def reading_notes(clauses: str, names: DeclaredNames, typed: str) -> tuple[str, 
     return (*equality_notes(clauses, typed), *dict.fromkeys(note for note in times if note))
 
 
+def form_notes(clauses: str, names: DeclaredNames) -> tuple[str, ...]:
+    """Return what to know of times in clauses that a sentence which is not understood may mean."""
+    _, specs = _written(clauses) or (None, ())
+    source = SourceFile("", f"spec s {{ {clauses} }}", "text")
+    return tuple(dict.fromkeys(note for part in _parts_of(specs) if (note := _apart_note(part, source, names.step_s))))
+
+
 def equality_notes(clauses: str, typed: str) -> tuple[str, ...]:
     """Return why clauses have two comparisons of a number with fractions in place of the `==` of ``typed``."""
     written = _written(clauses)

@@ -153,7 +153,7 @@ PHRASES: Final[Mapping[str, str]] = {
     "last": "last|previous",
     "then": "then|and then|and after that|and finally|, then|, and then|, and after that",
     "at_once": "at the same time|simultaneously|together|at the same step|at same time|at same step|"
-    "on the same frame",
+    "on the same frame|at a time|at any one time|at once|at the same moment|in the same step",
     "at_end": "at the end|at the last step|on the last step|at end|at last step|on last step",
     "at_start": "at the start|at the beginning|on the first step|at the first step|initially|at start|at beginning|"
     "on first step|at first step|in the beginning|started with|began with|when started|had at start|had at beginning",

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from typing import Final
+
 from tltlc.core.record import replace
 from tltlc.grammar.english.answers import Asked
+from tltlc.grammar.english.conditions import Members
 from tltlc.grammar.english.events import Counted, Event, Held, as_state
 from tltlc.grammar.english.intervals import Intervals, changing, is_edge
 from tltlc.grammar.english.quantities import Duration
@@ -12,6 +15,8 @@ from tltlc.grammar.english.terminals import Term
 from tltlc.grammar.mistakes.sentences.answers import Answer
 from tltlc.grammar.mistakes.sentences.states import ATOM, OR, State, joined
 
+_MOST_PAIRS: Final = 6
+"""The most rules that one sentence stands for."""
 _Found = Reading | list[Reading] | None
 
 
@@ -54,6 +59,12 @@ class TwoRules(Intervals):
         if not isinstance(limit, Reading) or sign not in ("<=", "<"):
             return None
         return Reading((*limit.clauses, f"keep {condition.text}"), f"if `{condition.text}` must hold at every step")
+
+    def avoid_several(self, members: Members) -> Reading | None:
+        """Return the rules of `never more than one of a, b and c`: one for each two of them."""
+        states = members.states
+        pairs = [joined([a, b], "and") for at, a in enumerate(states) for b in states[at + 1 :]]
+        return Reading(tuple(f"avoid {pair.text}" for pair in pairs)) if len(pairs) <= _MOST_PAIRS else None
 
     # The time between two events.
 

@@ -10,7 +10,7 @@ from tltlc.diagnostics.diagnostic import Diagnostic, Fix, replacement_fix
 from tltlc.grammar.english.clauses import plain_text
 from tltlc.grammar.english.doubts import is_english_alone, takes_one_reading
 from tltlc.grammar.english.gaps import sentence_with_gaps
-from tltlc.grammar.english.notes import notes, reading_notes
+from tltlc.grammar.english.notes import form_notes, notes, reading_notes
 from tltlc.grammar.english.readings import sentence, sentence_forms, unread_rule
 from tltlc.grammar.english.rules import Reading
 from tltlc.grammar.english.terminals import CALLED
@@ -145,8 +145,9 @@ def _with_forms(failure: ParseFailure, diagnostic: Diagnostic, words: Words) -> 
     offered = sentence_forms(words) or sentence_forms(with_names(words))
     if not offered:
         return _with_gaps(diagnostic, words)
-    listed = "".join(f"\n`{form.clause}`: {form.says}" for form in offered)
-    return replace(diagnostic, help=f"write one of these, if it says what you mean:{listed}")
+    known = form_notes(" ".join(form.clause for form in offered), declared_names(failure.source))
+    listed = "".join(("\n", *(f"`{form.clause}`: {form.says}\n" for form in offered), *(f"{note}\n" for note in known)))
+    return replace(diagnostic, help=f"write one of these, if it says what you mean:{listed.rstrip()}")
 
 
 def _with_gaps(diagnostic: Diagnostic, words: Words) -> Diagnostic:
