@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from tests.grammar.phrases_as_typed import fix
-from tests.grammar.test_english_sentences import HEAD
+from tests.grammar.sentences import HEAD
 from tltlc import compile_text
 
 CLAUSES = {

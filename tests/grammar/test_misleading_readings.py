@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from tests.grammar.phrases_as_typed import errors
-from tests.grammar.test_english_sentences import HEAD
+from tests.grammar.sentences import HEAD
 from tltlc import compile_text
 from tltlc.core.source import SourceFile
 from tltlc.monitor import Monitor
@@ -91,6 +91,8 @@ HELPS = {
     "keep coins at most twice lap": "write `keep coins <= 2 * lap`",
     # The first, the second and further ones.
     "fire within 60 s after the first spray": "write `keep begins (once spray) implies eventually within 60 s fire`",
+    "when fire first happens, coins == 0": "write `keep begins (once fire) implies coins == 0`",
+    "at the first fire, coins is 0": "write `keep begins (once fire) implies coins == 0`",
     "after the second spray, no fire": "write `keep begins (times(spray) >= 2) implies always not fire`",
     "no fire until the third spray": "write `require not fire weak_until begins (times(spray) >= 3)`",
     "fire only after the second spray": "write `keep fire implies times(spray) >= 2`",

@@ -6,7 +6,7 @@ import pytest
 
 import tltlc
 from tests.grammar.phrases_as_typed import errors
-from tests.grammar.test_english_sentences import HEAD
+from tests.grammar.sentences import HEAD
 from tltlc.core.source import SourceFile
 from tltlc.monitor import Monitor
 

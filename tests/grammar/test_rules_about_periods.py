@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 import pytest
 
 import tltlc
-from tests.grammar.test_english_sentences import HEAD, read
+from tests.grammar.sentences import HEAD, read
 from tltlc.monitor import Monitor
 
 STEPS = {

@@ -6,7 +6,7 @@ import pytest
 
 import tltlc
 from tests.grammar.phrases_as_typed import errors, fix, is_equivalent
-from tests.grammar.test_english_sentences import HEAD, VARIES, read, spec
+from tests.grammar.sentences import HEAD, VARIES, read, spec
 from tltlc.grammar.mistakes.sentences.validity import is_valid
 from tltlc.monitor import Monitor
 

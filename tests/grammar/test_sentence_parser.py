@@ -6,7 +6,8 @@ from typing import Any
 
 import pytest
 
-from tests.grammar.test_english_sentences import ONE_READING, words_of_sentence
+from tests.grammar.sentences import words_of_sentence
+from tests.grammar.test_sentences_with_one_reading import ONE_READING
 from tltlc.grammar.english.sentence_parser import SentenceParser
 from tltlc.grammar.english.terminals import terms
 

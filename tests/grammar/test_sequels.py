@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from tests.grammar.phrases_as_typed import errors
-from tests.grammar.test_english_sentences import read, spec
+from tests.grammar.sentences import read, spec
 from tltlc import compile_text
 from tltlc.grammar.mistakes.sentences.validity import is_valid
 from tltlc.monitor import Monitor

@@ -6,7 +6,7 @@ import pytest
 
 import tltlc
 from tests.grammar.phrases_as_typed import errors, fix
-from tests.grammar.test_english_sentences import HEAD, read
+from tests.grammar.sentences import HEAD, read
 from tests.grammar.test_windows_in_sentences import is_kept
 from tltlc.core.source import SourceFile
 

@@ -8,7 +8,7 @@ from itertools import product
 import pytest
 
 import tltlc
-from tests.grammar.test_english_sentences import HEAD, read
+from tests.grammar.sentences import HEAD, read
 from tltlc.monitor import Monitor
 
 STEPS = 2

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from tltlc.grammar.english.answers import Asked
 from tltlc.grammar.english.rules import Reading, Rules, are_simple
+from tltlc.grammar.english.terminals import Term
 from tltlc.grammar.mistakes.sentences.states import ATOM, OR, State
 
 
@@ -12,6 +14,12 @@ class Ordinals(Rules):
     def first_of_all(self, state: State) -> State | None:
         """Return the step of `the first a`; a later a is none."""
         return State(f"begins (once {state.at(ATOM)})") if are_simple(state) else None
+
+    def first_of_name(self, term: Term) -> State | None:
+        return self.first_of_all(State(term.text))
+
+    def at_ordinal(self, event: State, answers: list[Asked]) -> Reading | list[Reading] | None:
+        return self.first("when", event, answers)
 
     def nth_of_all(self, number: str, state: State) -> State | None:
         """Return the step of `the third a`."""
