@@ -29,6 +29,11 @@ def readings(clause: str) -> list[str]:
             "keep a implies eventually within 6 s (b or c)",
             "keep a implies (eventually within 6 s b) or c",
         ),
+        (
+            "keep a implies eventually within 6 s b or (c until b)",
+            "keep a implies eventually within 6 s (b or (c until b))",
+            "keep a implies (eventually within 6 s b) or (c until b)",
+        ),
         ("keep once a since b", "keep once (a since b)", "keep (once a) since b"),
         ("require always a until b", "require always (a until b)", "require (always a) until b"),
         (

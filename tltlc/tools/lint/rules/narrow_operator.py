@@ -48,7 +48,9 @@ def _findings(expression: Expr, source: SourceFile) -> Iterator[RuleFinding]:
             operands = walk.operands(part, part.op) if id(part) not in inner else []
         for place, operand in enumerate(operands):
             if isinstance(operand, Unary) and _is_narrow(operand, part.op, source):
-                following = [*takewhile(_is_about_one_step, operands[place + 1 :])]
+                is_timed = operand.op == "F" and operand.bound is not None
+                is_beside = _is_in_time if is_timed else _is_about_one_step
+                following = [*takewhile(is_beside, operands[place + 1 :])]
                 if following:
                     is_past = operand.op in (*_PAST_WORDS, "previously")
                     yield _finding(operand, part.op, following, source, one_reading=is_past and _has_future(part))
@@ -84,6 +86,14 @@ def _is_about_one_step(tree: Expr) -> bool:
     while isinstance(tree, Quantified) or (isinstance(tree, Unary) and tree.op == "not"):
         tree = without_brackets(tree.body if isinstance(tree, Quantified) else tree.operand)
     return not (isinstance(tree, Constant) or (isinstance(tree, (Unary, BinaryExpr)) and tree.op in _TEMPORAL))
+
+
+def _is_in_time(tree: Expr) -> bool:
+    """Whether an operand may be what must come in time, too: one about one step, or `(a until b)`."""
+    inside = without_brackets(tree)
+    return _is_about_one_step(tree) or (
+        isinstance(tree, GroupExpr) and isinstance(inside, BinaryExpr) and inside.op in ("U", "W")
+    )
 
 
 def _has_future(tree: Expr) -> bool:
