@@ -104,7 +104,7 @@ def check_closed_pair(left: Quantity, right: Quantity, expr: BinaryExpr, env: En
 
 def _closed_text(value: Quantity, env: Env) -> str:
     """Return the text of a recalled quantity with a maximum: the limit of the spec for a time, else an example."""
-    example = "10" if value.recall is not None and value.recall.is_count else env.context.limit_text or "60 s"
+    example = "1000" if value.recall is not None and value.recall.is_count else env.context.limit_text or "60 s"
     return f"{value.text[:-1]}, {example})"
 
 

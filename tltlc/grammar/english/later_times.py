@@ -35,7 +35,8 @@ class LaterTimes(Rules):
     def window_after(self, state: State, window: Window) -> Asked | list[Asked] | None:
         """Return the answers of `b between 1 s and 2 s later`; `not b` may ask for one step, or for all of them."""
         if not is_negative(state):
-            return super().window_after(state, window)
+            asked = super().window_after(state, window)
+            return asked if asked is not None else self._window_with_none_before(state, window)
         denied = state.negated()
         asked = super().window_after(denied, window) if 0 < self.steps(window[0]) <= MOST_STEPS else None
         if not isinstance(asked, Asked):
@@ -46,6 +47,15 @@ class LaterTimes(Rules):
             replace(asked, answer=Answer("now", State(f"not {formula}")), condition=_AT_NO_STEP),
             replace(asked, answer=Answer("now", once), condition="if one step is enough"),
         ]
+
+    def _window_with_none_before(self, state: State, window: Window) -> Asked | None:
+        """Return the answer of `b between 1 s and 3 s later` that forbids an earlier b, which needs fewer states."""
+        if state.level > ATOM or is_edge(state) or not 0 < self.steps(window[0]) < self.steps(window[1]):
+            return None
+        free = f"always for {window[0].text} {state.negated().at(ATOM)}"
+        in_time = f"eventually within {window[1].text} {state.at(ATOM)}"
+        condition = f"if `{state.text}` must not come earlier"
+        return Asked(Answer("now", State(f"({free}) and {in_time}", AND)), condition, is_formula=True)
 
     def window_unless(self, state: State, window: Window, event: Event) -> list[Asked] | None:
         """Return the readings of `b between 1 s and 2 s later unless c`."""

@@ -9,7 +9,7 @@ from tltlc.core.record import replace
 from tltlc.grammar.english.answers import Asked, is_negative
 from tltlc.grammar.english.differences import Period
 from tltlc.grammar.english.events import Counted, Event, as_state
-from tltlc.grammar.english.intervals import Span
+from tltlc.grammar.english.intervals import Span, is_edge
 from tltlc.grammar.english.quantities import IT, Duration, begun, counted_by
 from tltlc.grammar.english.rules import Reading, When, begun_text
 from tltlc.grammar.english.terminals import Term
@@ -328,10 +328,15 @@ class Periods(Totals):
     # Goals and rules with a second event.
 
     def avoid_then_without(self, first: State, second: State, between: State) -> _Found:
-        if max(first.level, second.level, between.level) > ATOM:
+        """Return the readings of `avoid a then a without b`: a second a, which may last, or a second step with it."""
+        if max(first.level, second.level) > ATOM:
             return None
         again = f"previously (not {between.at(ATOM)} since {first.at(ATOM)})"
-        return Reading((f"avoid {second.at(AND)} and {again}",))
+        second_step = Reading((f"avoid {second.at(AND)} and {again}",))
+        if first != second or is_edge(first):
+            return second_step
+        count = Reading((f"keep times_since({first.text}, {between.text}) <= 1",), "if steps in a row count once")
+        return [count, replace(second_step, condition="if each step counts")]
 
     def avoid_after_without(self, second: State, first: State, between: State) -> _Found:
         return self.avoid_then_without(first, second, between)
