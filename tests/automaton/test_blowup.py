@@ -16,6 +16,7 @@ from tltlc.core.source import Span
 from tltlc.diagnostics.diagnostic import TltlError
 from tltlc.io.limits import WORK
 from tltlc.logic.formula import Formula, and_, atom, eventually, next_, until, weak_next
+from tltlc.pipeline import compile_text
 from tltlc.resolve.spec import Conjunct, Spec
 
 
@@ -118,3 +119,13 @@ def test_a_long_chain_of_untils_takes_a_state_for_each_atom() -> None:
     for name in reversed(names[:-1]):
         formula = until(name, formula)
     assert len(build(spec_from_formula(formula)).states) == 41
+
+
+def test_a_goal_that_must_last_gets_a_time_that_needs_few_states() -> None:
+    head = "clock 10 Hz signal a: bool signal b: bool spec s { keep a implies "
+    with pytest.raises(TltlError) as raised:
+        compile_text(f"{head}eventually within 60 s always for 3 s b }}")
+    written = "eventually within 63 s time_holding(b) >= 3 s"
+    assert f"write `{written.replace('(b)', '(q)')}` for " in (raised.value.diagnostics[0].help or "")
+    (fspa,) = compile_text(f"{head}{written} }}")
+    assert len(fspa.states) < 5

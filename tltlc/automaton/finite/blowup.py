@@ -122,7 +122,10 @@ def error_with_clauses(
         advice = _sequence_advice(times) if times >= MOST_GOALS else _guard_advice(spec, reason)
         return TltlError([Diagnostic("TLT0502", reason.title(spec.name), labels, advice)])
     title = f"the automaton of `{spec.name}` {too_large}"
-    if bound := longest_bound(alone or sizes):
+    lasting = next((text for part in alone or sizes if (text := _lasting_goal(part))), "")
+    if lasting:
+        advice = lasting
+    elif bound := longest_bound(alone or sizes):
         advice = bound_advice(bound)
     elif times >= MOST_GOALS:
         advice = _sequence_advice(times)
@@ -132,6 +135,24 @@ def error_with_clauses(
 def longest_bound(parts: Iterable[Conjunct]) -> Bound | None:
     """Return the longest bound that is unfolded to states in some clauses; None if none is."""
     return max((bound for part in parts for bound in part.bounds), key=lambda bound: bound.samples, default=None)
+
+
+def _lasting_goal(part: Conjunct) -> str:
+    """Return how to write `eventually within 60 s always for 3 s q` with few states; "" without such bounds."""
+    for goal in part.bounds:
+        for length in part.bounds:
+            between = goal.source.text[goal.span.end : length.span.start].strip(" (")
+            if goal.op == "F" and length.op == "G" and goal.words and length.words and between == length.operator:
+                time, shorter = (bound.source.slice(bound.span).split()[1:] for bound in (goal, length))
+                whole = f"{goal.samples + length.samples} steps"
+                if time[-1] == shorter[-1]:
+                    whole = f"{float(time[0]) + float(shorter[0]):g} {time[-1]}"
+                return (
+                    f"write `{goal.operator} within {whole} time_holding(q) >= {' '.join(shorter)}` for "
+                    f"`{goal.operator} within {' '.join(time)} {length.operator} for {' '.join(shorter)} q`, which "
+                    "needs few states: then q may have begun before it is asked for"
+                )
+    return ""
 
 
 def bound_advice(bound: Bound) -> str:

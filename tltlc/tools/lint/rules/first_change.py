@@ -22,8 +22,8 @@ _COMPARED: Final[Mapping[str, Callable[[float, float], bool]]] = {
     "==": eq,
     "!=": ne,
 }
-_LATER: Final = ("ends", "previously")
-"""What no first step has."""
+_LATER: Final = ("ends", "previously", "once", "since")
+"""What says what has been, or that there is a step before."""
 
 
 def check(view: FileView) -> Iterator[RuleFinding]:
@@ -36,7 +36,7 @@ def check(view: FileView) -> Iterator[RuleFinding]:
             rule = without_brackets(value.tree)
             for asked in asked_results(clause, value):
                 condition = asked.condition.tree
-                if not asked.steps and _is_change(asked.part, condition) and not _has_step_before(condition):
+                if not asked.steps and _is_change(asked.part, condition) and not has_step_before(condition):
                     is_whole = (
                         isinstance(rule, BinaryExpr)
                         and without_brackets(rule.left) is condition
@@ -51,7 +51,7 @@ def _is_change(answer: ScopedExpression, condition: Expr) -> bool:
     if isinstance(tree, Unary) and tree.op == "previously":
         before = without_brackets(tree.operand)
         return isinstance(before, IsExpr) and any(
-            isinstance(turned, IsExpr) and _text(answer, turned.operand) == _text(answer, before.operand)
+            isinstance(turned, IsExpr) and same_text(answer, turned.operand, before.operand)
             for part in parts(condition)
             if isinstance(part, Unary) and part.op == "begins"
             for turned in [without_brackets(part.operand)]
@@ -60,15 +60,15 @@ def _is_change(answer: ScopedExpression, condition: Expr) -> bool:
         return False
     sides = [without_brackets(tree.left), without_brackets(tree.right)]
     for one, other in (sides, sides[::-1]):
-        call, step = _moved(other)
+        call, step = moved(other)
         if not isinstance(call, CallExpr) or call.name != "previous":
             continue
-        if _text(answer, call.arguments[0].value) == _text(answer, one):
+        if same_text(answer, call.arguments[0].value, one):
             return not _COMPARED[tree.op](*((0.0, step) if one is sides[0] else (step, 0.0)))
     return False
 
 
-def _moved(side: Expr) -> tuple[Expr, float]:
+def moved(side: Expr) -> tuple[Expr, float]:
     """Return y and the number of `y + 2`, `y - 2` or `y`."""
     if not isinstance(side, BinaryExpr) or side.op not in ("+", "-"):
         return side, 0.0
@@ -78,13 +78,16 @@ def _moved(side: Expr) -> tuple[Expr, float]:
     return without_brackets(side.left), step.value if side.op == "+" else -step.value
 
 
-def _text(part: ScopedExpression, tree: Expr) -> str:
-    return part.with_tree(without_brackets(tree)).text
+def same_text(part: ScopedExpression, one: Expr, other: Expr) -> bool:
+    """Whether two parts of an expression have the same text, apart from brackets around them."""
+    return part.with_tree(one).text == part.with_tree(other).text
 
 
-def _has_step_before(condition: Expr) -> bool:
+def has_step_before(condition: Expr) -> bool:
+    """Whether a condition says that there is a step before, or is about what has been."""
     return any(
-        (isinstance(part, Unary) and part.op in _LATER) or (isinstance(part, CallExpr) and part.name in FUNCTIONS)
+        (isinstance(part, (Unary, BinaryExpr)) and part.op in _LATER)
+        or (isinstance(part, CallExpr) and part.name in FUNCTIONS)
         for part in parts(condition)
     )
 
