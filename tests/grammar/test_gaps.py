@@ -23,7 +23,7 @@ def help_of(typed: str) -> str:
         ("keep ends fire implies gates up within 4 s", "keep ends fire implies eventually within 4 s p", ["gates up"]),
         ("keep door closed while spray", "keep spray implies p", ["door closed"]),
         ("after fire, no trading until spray", "keep fire implies (not p weak_until spray)", ["trading"]),
-        ("when fire, the lamp goes out within 5 s", "keep fire implies eventually within 5 s p", ["lamp goes out"]),
+        ("when fire, the lamp glows within 5 s", "keep fire implies eventually within 5 s p", ["lamp glows"]),
         ("the player has to be calm when spray", "keep spray implies p", ["calm"]),
         ("whenever the boss dies, music within 2 s", "keep p implies eventually within 2 s q", ["boss dies", "music"]),
         ("no trading during combat", "keep q implies not p", ["trading", "combat"]),

@@ -69,6 +69,26 @@ HELPS = {
     "at most one of fire, spray and boss_dead at a time": (
         "write `avoid fire and spray` and `avoid fire and boss_dead` and `avoid spray and boss_dead`"
     ),
+    # Rules of a tester's corpus.
+    "avoid second fire": "write `keep times(fire) <= 1`",
+    "keep spray when health > 80 except when fire": "write `keep health > 80 and not fire implies spray`",
+    "avoid health > 50 for 3 steps in a row": (
+        "write `avoid always for 2 steps health > 50 and next after 2 steps health > 50`"
+    ),
+    "every fire is out within 1 min": "write `avoid time_holding(fire) > 1 min`",
+    "keep phase changes from shift only to results": "write `keep ends (phase is shift) implies phase is results`",
+    "health never less than 80% of max health": "write `keep health >= 0.8 * highest(health)`",
+    "keep health >= half of health 30 s ago": "write `keep health >= previous(health, 30 s) / 2`",
+    "fire before second spray": "write `keep begins (times(spray) >= 2) implies once fire`",
+    "coins never drops more than 30 in one step": "write `keep coins >= previous(coins) - 30`",
+    "reach lap == 2 and health >= 50 all the time until then": "write `require health >= 50 until lap == 2`",
+    "when phase is menu coins resets to 0": "write `keep phase is menu implies coins == 0`",
+    "lap never goes from 0 to 2": "write `avoid previously (lap == 0) and lap == 2`",
+    "reach 3 times coins increases without fire": (
+        "write `reach times_since(coins > previous(coins), fire) >= 3` if `fire` must not come between them, "
+        "or `reach times(coins > previous(coins)) >= 3` and `avoid fire` if `fire` must never come"
+    ),
+    "reach coins >= 10 twice": "write `reach times(coins >= 10) >= 2`",
     # Values of the step before, or of some time ago.
     "keep fire implies coins and lap unchanged": (
         "write `keep fire and previously fire implies coins == previous(coins) and lap == previous(lap)` "
@@ -83,8 +103,8 @@ HELPS = {
     "coins rises by at most 3 in any 2 s": "write `keep coins <= lowest_within(coins, 2 s) + 3`",
     "keep coins >= highest coins in the last 5 s - 3": "write `keep coins >= highest_within(coins, 5 s) - 3`",
     "whenever fire, coins rises by at least 3 within 0.3 s": (
-        "write `keep fire implies eventually within 0.3 s coins >= value_at(coins, fire) + 3` "
-        "if it is compared with its value at `fire`, "
+        "write `keep begins fire implies eventually within 0.3 s coins >= value_at(coins, begins fire) + 3` "
+        "if it is compared with its value at `begins fire`, "
         "or `keep fire implies eventually within 0.3 s coins >= previous(coins) + 3` "
         "if it must change so much from one step to the next"
     ),

@@ -10,7 +10,7 @@ from tltlc.core.record import replace
 from tltlc.grammar.english.answers import Asked
 from tltlc.grammar.english.events import Event, Held, as_state
 from tltlc.grammar.english.quantities import Change, Duration, Number, begun, comparison
-from tltlc.grammar.english.rules import LASTING, Reading, Rules, When
+from tltlc.grammar.english.rules import LASTING, Reading, Rules, When, begun_text
 from tltlc.grammar.english.terminals import Term
 from tltlc.grammar.mistakes.declared_names import DeclaredNames
 from tltlc.grammar.mistakes.sentences.changes import keeps_values
@@ -108,19 +108,27 @@ class Changes(Rules):
     def implies(self, event: Event, answers: list[Asked]) -> _Found:
         return self._changed_since(event, answers, lambda asked: super(Changes, self).implies(event, asked))
 
+    def _implied_by(self, event: State, answers: list[Asked]) -> _Found:
+        return super().implies(event, answers)
+
     def _changed_since(self, event: Event, answers: list[Asked], rule: Callable[[list[Asked]], _Found]) -> _Found:
         """Return the rule; `when a, b rises by 3 within 2 s` may be about one step, or about all since a."""
         state, answer = as_state(event), answers[0].answer
         made, found = self.changes_by_amounts.get(answer.state.text), rule(answers)
         if made is None or state is None or answer.kind != "within" or answers[1:]:
             return found
-        since = made.compared_with(f"value_at({made.term.text}, {state.text})")
-        whole = None if since is None else _only(rule([replace(answers[0], answer=replace(answer, state=since))]))
+        begun = State(begun_text(state))
+        # A number with fractions seldom changes by exactly so much.
+        if made.sign == "==" and made.term.kind == "REAL":
+            made = replace(made, sign=">=")
+        since = made.compared_with(f"value_at({made.term.text}, {begun.text})")
+        asked = None if since is None else replace(answers[0], answer=replace(answer, state=since))
+        whole = None if asked is None else _only(self._implied_by(begun, [asked]))
         of_step = _only(found)
         if whole is None or of_step is None:
             return found
         return [
-            replace(whole, condition=f"if it is compared with its value at `{state.text}`"),
+            replace(whole, condition=f"if it is compared with its value at `{begun.text}`"),
             replace(of_step, condition="if it must change so much from one step to the next"),
         ]
 
@@ -143,6 +151,15 @@ class Changes(Rules):
             Reading((f"keep {within.at(OR)} implies {same.at(OR)}",), f"within each `{state.text}`"),
             Reading((f"keep {state.at(OR)} implies {same.at(OR)}",), "also from the step before it begins"),
         ]
+
+    def last_in_value(self, answers: list[Asked], value: Term) -> _Found:
+        """Return the readings of `tax is constant in spring`, where one enum has the value."""
+        name = self.enum_of(value)
+        state = None if name is None else self.enum(name, value)
+        return None if state is None else self.last(answers, "while", state)
+
+    def in_value_first(self, value: Term, answers: list[Asked]) -> _Found:
+        return self.last_in_value(answers, value)
 
     def at_condition(self, state: State, answers: list[Asked]) -> _Found:
         return self._same_while("while", state, answers) or self.first("when", state, answers)

@@ -118,6 +118,14 @@ class Exceptions(Rules):
         both = joined([state, during], "and")
         return Reading((f"keep {both.at(OR)} implies {exception.at(OR)}",), self._when_meant(event))
 
+    def keep_when_unless(self, state: State, when: When, during: State, event: Event) -> _Found:
+        """Return the rule of `keep a when b except when c`."""
+        exception = as_state(event)
+        if when == "after" or exception is None or exception.text in self._early or not are_simple(state, during):
+            return None
+        condition = joined([during, exception.negated()], "and")
+        return Reading((f"keep {condition.at(OR)} implies {state.at(OR)}",), self._when_meant(event))
+
     def avoid_before_unless(self, state: State, first: State, exception: State) -> _Found:
         """Return the readings of `a not before b unless c`: c excuses its own step, or all steps from it on."""
         if not are_simple(state, first) or is_negative(state):

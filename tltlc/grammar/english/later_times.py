@@ -106,6 +106,9 @@ class LaterTimes(Rules):
             return self.first("when", event, [asked])
         return None if condition is None else self._long_after(state, duration, condition)
 
+    def implied_after(self, event: Event, duration: Duration, state: State) -> _Found:
+        return self.exactly_after(state, duration, event)
+
     def time_after_first(self, duration: Duration, event: Event, state: State) -> _Found:
         return self.exactly_after(state, duration, event)
 

@@ -221,6 +221,13 @@ class Orders(Rules):
         state, following = self.enum_ends(name, value), self.enum(name, *after)
         return None if state is None or following is None else Reading((f"keep {state.text} implies {following.text}",))
 
+    def only_to_first(self, value: Term, name: Term, *after: Term) -> _Found:
+        return self.only_to(name, value, *after)
+
+    def reach_keeping(self, goal: State, kept: State) -> Reading:
+        """Return the rule of `reach a and b until then`."""
+        return Reading((f"require {kept.at(ATOM)} until {goal.at(ATOM)}",))
+
     def values_only_after(self, name: Term, *values: Term) -> _Found:
         states = [self.enum(name, value) for value in values]
         known = [state for state in states if state is not None]

@@ -25,6 +25,14 @@ class Ordinals(Rules):
         """Return the step of `the third a`."""
         return State(f"begins (times({state.text}) >= {number})") if are_simple(state) else None
 
+    def before_ordinal(self, state: State, event: State) -> Reading | None:
+        """Return the rule of `a before the second b`."""
+        return Reading((f"keep {event.text} implies once {state.at(ATOM)}",)) if are_simple(state) else None
+
+    def avoid_second_ever(self, state: State) -> Reading | None:
+        """Return the rule of `no second a`."""
+        return Reading((f"keep times({state.text}) <= 1",)) if are_simple(state) else None
+
     def only_after_nth(self, state: State, number: str, event: State) -> Reading | None:
         """Return the rule of `a only after the third b`: that step, or a later one."""
         if not are_simple(state, event):

@@ -338,6 +338,17 @@ class Periods(Totals):
         count = Reading((f"keep times_since({first.text}, {between.text}) <= 1",), "if steps in a row count once")
         return [count, replace(second_step, condition="if each step counts")]
 
+    def reach_count_without(self, counted: Counted, between: State) -> _Found:
+        """Return the readings of `reach a 3 times without b`: none between them, or none at all."""
+        goal = self.limit_count(replace(counted, sign=">="))
+        since = _times_since(replace(counted, sign=">="), between)
+        if since is None or not isinstance(goal, Reading):
+            return None
+        return [
+            Reading((f"reach {since.text}",), f"if `{between.text}` must not come between them"),
+            Reading((*goal.clauses, f"avoid {between.text}"), f"if `{between.text}` must never come"),
+        ]
+
     def avoid_after_without(self, second: State, first: State, between: State) -> _Found:
         return self.avoid_then_without(first, second, between)
 

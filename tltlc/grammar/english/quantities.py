@@ -132,6 +132,19 @@ class Quantities:
     def half(self, term: Term) -> Number:
         return Number(f"{term.text} / 2", Term("REAL", term.text))
 
+    def reset(self, term: Term, value: Number) -> State | None:
+        return comparison(self.variable(term), "==", value)
+
+    def half_before(self, term: Term, duration: Duration) -> Number | None:
+        before = self.value_before(term, duration)
+        return None if before is None else Number(f"{before.text} / 2", Term("REAL", term.text))
+
+    def share(self, percent: Term, unit: Term, of: Number) -> Number | None:
+        """Return `80 % of x`."""
+        if unit.text != "%" or of.term is None:
+            return None
+        return Number(f"{float(percent.text) / 100:g} * {of.text}", Term("REAL", of.text))
+
     def previous(self, term: Term) -> Number:
         return Number(f"previous({term.text})", term)
 

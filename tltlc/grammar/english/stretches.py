@@ -8,7 +8,7 @@ from tltlc.grammar.english.events import Counted, Event, Held, as_state
 from tltlc.grammar.english.intervals import Intervals
 from tltlc.grammar.english.orders import Orders
 from tltlc.grammar.english.quantities import Duration
-from tltlc.grammar.english.rules import Goals, Reading, When, are_simple, begun_text
+from tltlc.grammar.english.rules import Goals, Reading, When, are_simple, begun_text, never_held
 from tltlc.grammar.english.terminals import Term
 from tltlc.grammar.mistakes.sentences.answers import Answer
 from tltlc.grammar.mistakes.sentences.states import ATOM, OR, State, joined
@@ -28,6 +28,14 @@ class Stretches(Intervals, Orders):
 
     def lasts_less(self, state: State, duration: Duration) -> _Found:
         return self.avoid(Held(state, ">=", duration))
+
+    def must_stop_each(self, state: State, duration: Duration) -> _Found:
+        stretch = self.keep_short(state, duration)
+        return stretch if isinstance(stretch, Reading) else None
+
+    def avoid_straight(self, state: State, duration: Duration) -> Reading | None:
+        """Return the rule of `never a for 3 steps in a row`."""
+        return never_held(Held(state, ">=", duration))
 
     def must_stop(self, state: State, duration: Duration) -> _Found:
         stretch = self.keep_short(state, duration)
@@ -102,7 +110,11 @@ class Stretches(Intervals, Orders):
         """Return the readings of `reach a within 5 s and b`: both at one step, or each at its own."""
         both = joined([state, other], "and").at(ATOM)
         first = f"require eventually within {duration.text} {state.at(ATOM)}"
+        until = Reading(
+            (first, f"require {other.at(ATOM)} until {state.at(ATOM)}"), f"if `{other.text}` must hold until then"
+        )
         return [
+            *([until] if is_negative(other) else []),
             Reading((f"require eventually within {duration.text} {both}",), "if all of it must hold at one step"),
             Reading((first, f"reach {other.text}"), f"if `{other.text}` may come at another step"),
         ]

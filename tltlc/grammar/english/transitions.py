@@ -29,6 +29,10 @@ class Transitions(Rules):
         state = self.move(*parts)
         return None if state is None else self.avoid_move(state)
 
+    def avoid_number_move(self, term: Term, start: Term, end: Term) -> Reading:
+        """Return the rule of `stage never goes from 0 to 2`."""
+        return Reading((f"avoid previously ({term.text} == {start.text}) and {term.text} == {end.text}",))
+
     # What stays.
 
     def bare(self, state: State) -> Reading | list[Reading] | None:

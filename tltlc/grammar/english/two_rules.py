@@ -66,6 +66,13 @@ class TwoRules(Intervals):
         pairs = [joined([a, b], "and") for at, a in enumerate(states) for b in states[at + 1 :]]
         return Reading(tuple(f"avoid {pair.text}" for pair in pairs)) if len(pairs) <= _MOST_PAIRS else None
 
+    def reach_one_of_two(self, one: State, other: State) -> Reading | None:
+        """Return the rules of `reach either a or b but never both`, if that is about all of play."""
+        if max(one.level, other.level) > ATOM:
+            return None
+        either, both = (joined([one, other], operator).text for operator in ("or", "and"))
+        return Reading((f"reach {either}", f"avoid {both}"), "if both must never hold together")
+
     # The time between two events.
 
     def apart(self, duration: Duration, *events: Term | State) -> _Found:

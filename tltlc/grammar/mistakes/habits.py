@@ -58,7 +58,8 @@ _ARROWS: Final = {"==>": "implies", "-->": "implies", "<=>": "iff", "<==>": "iff
 """Maps arrows of other languages to the words of the language."""
 NO_UNITS: Final = frozenset(
     "a after also an and as at before between but by during each every except for from if in is of on once only or per "
-    "provided since than that the then till to under unless until when whenever where while with within without".split()
+    "thrice times twice provided since than that the then till to under unless until when whenever where while with "
+    "within without".split()
 )
 """Words of English that stand behind a number, as in `at most 3 per lap`, and are no units."""
 

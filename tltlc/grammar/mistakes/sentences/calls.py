@@ -66,7 +66,7 @@ def _own(words: Words, at: int) -> tuple[int, list[Word]]:
     stop = stop if is_call else at + 2
     if text in _EDGES and is_event(inner):
         return stop, [_word(_EDGES[text], words[at]), *inner]
-    if text in _BEFORE and is_event(inner):
+    if text in _BEFORE and is_event(inner) and (is_call or text != "last"):
         return stop, [_word("previously", words[at]), *inner]
     if declared is not None and declared.type != "enum" and is_value(inner) and text not in _EDGES:
         name = "initial" if text in _FIRST else "previous"
