@@ -73,8 +73,11 @@ def register_phrases(fspa: Fspa) -> dict[str, str]:
 
 def start_phrase(register: Register) -> str:
     """Return what a register is where a reader may expect something else; "" if nothing needs to be said."""
-    if register.kind == "previous" and split_name(register.name)[1][1:]:
+    arguments = split_name(register.name)[1]
+    if register.kind == "previous" and arguments[1:]:
         return "before that is reached, the one of the first step"
+    if register.kind == "value_at" and arguments[-1].startswith("ends "):
+        return "at the first step without it; before that, the one of the first step of all"
     return _AT_START.get(register.kind, "")
 
 

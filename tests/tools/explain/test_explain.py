@@ -329,6 +329,10 @@ def test_a_large_spec_is_explained_without_the_table_of_its_states() -> None:
             "how often a has begun since b "
             "(before the first of these, since the first step; steps in a row count once)",
         ),
+        (
+            "keep n >= value_at(n, ends b)",
+            "the n when b last ended (at the first step without it; before that, the one of the first step of all)",
+        ),
         ("keep n >= value_at(n, b)", "the n when b last held (before that, the one of the first step)"),
     ],
 )
