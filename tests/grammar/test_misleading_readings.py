@@ -89,6 +89,16 @@ HELPS = {
         "or `reach times(coins > previous(coins)) >= 3` and `avoid fire` if `fire` must never come"
     ),
     "reach coins >= 10 twice": "write `reach times(coins >= 10) >= 2`",
+    "after fire wait 3 s before spray": "write `keep fire implies always for 3 s not spray`",
+    "no spray in the 3 s before fire": "write `keep begins fire implies not once within 3 s spray`",
+    "phase never menu twice": "write `keep times(phase is menu) <= 1`",
+    "never fire in phase menu unless spray in the last 2 s": (
+        "write `keep fire and phase is menu implies once within 2 s spray`"
+    ),
+    "fire and spray alternate": ("write `keep times_since(fire, spray) <= 1` and `keep times_since(spray, fire) <= 1`"),
+    "the time between fire and spray is at most 5 s": (
+        "write `keep begins fire implies eventually within 5 s spray` from each `fire` to a later `spray`"
+    ),
     # Values of the step before, or of some time ago.
     "keep fire implies coins and lap unchanged": (
         "write `keep fire and previously fire implies coins == previous(coins) and lap == previous(lap)` "

@@ -126,6 +126,9 @@ class Exceptions(Rules):
         condition = joined([during, exception.negated()], "and")
         return Reading((f"keep {condition.at(OR)} implies {state.at(OR)}",), self._when_meant(event))
 
+    def avoid_in_unless(self, state: State, during: State, event: Event) -> _Found:
+        return self.avoid_when_unless(state, "while", during, event)
+
     def avoid_before_unless(self, state: State, first: State, exception: State) -> _Found:
         """Return the readings of `a not before b unless c`: c excuses its own step, or all steps from it on."""
         if not are_simple(state, first) or is_negative(state):

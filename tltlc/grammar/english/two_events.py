@@ -5,7 +5,7 @@ from __future__ import annotations
 from tltlc.grammar.english.events import Event, as_state
 from tltlc.grammar.english.intervals import is_edge
 from tltlc.grammar.english.quantities import Duration
-from tltlc.grammar.english.rules import Reading, Rules, When, are_simple
+from tltlc.grammar.english.rules import Reading, Rules, When, are_simple, begun_text
 from tltlc.grammar.english.terminals import Term
 from tltlc.grammar.mistakes.sentences.states import ATOM, OR, State, joined
 
@@ -25,7 +25,49 @@ class TwoEvents(Rules):
     def avoid_number_without(self, number: str | Term, state: State, other: State) -> Reading | None:
         return self.avoid_count_without(state, number, other)
 
+    def alternate(self, one: State, other: State) -> Reading | None:
+        """Return the rules of `a and b alternate`: no second one without the other in between."""
+        if not are_simple(one, other) or one == other:
+            return None
+        return Reading(
+            (f"keep times_since({one.text}, {other.text}) <= 1", f"keep times_since({other.text}, {one.text}) <= 1")
+        )
+
+    def value_never_so_often(self, name: Term, value: Term, number: str) -> Reading | None:
+        """Return the rule of `mode is never menu twice`."""
+        state = self.enum(name, value)
+        if state is None or not number.isdecimal() or int(number) < 2:
+            return None
+        return Reading((f"keep times({state.text}) <= {int(number) - 1}",))
+
     # The time between them.
+
+    def avoid_just_before(self, state: State, duration: Duration, event: State) -> Reading | None:
+        """Return the rule of `no a in the 3 s before b`."""
+        if not are_simple(state, event):
+            return None
+        return Reading((f"keep {begun_text(event)} implies not once within {duration.text} {state.at(ATOM)}",))
+
+    def before_avoid(self, duration: Duration, event: State, state: State) -> Reading | None:
+        return self.avoid_just_before(state, duration, event)
+
+    def wait_before(self, when: When, event: Event, duration: Duration, state: State) -> Reading | None:
+        """Return the rule of `after a, wait 3 s before b`."""
+        start = as_state(event)
+        if start is None or not are_simple(start, state):
+            return None
+        return Reading((f"keep {start.text} implies always for {duration.text} {state.negated().at(ATOM)}",))
+
+    def time_between(self, first: State, second: State, sign: str, duration: Duration) -> Reading | None:
+        """Return the rule of `the time between a and b is at most 5 s`, from a to b."""
+        if not are_simple(first, second) or first == second:
+            return None
+        answer = f"eventually within {duration.text} {second.at(ATOM)}"
+        if sign in (">", ">="):
+            answer = f"always for {duration.text} {second.negated().at(ATOM)}"
+        return Reading(
+            (f"keep {begun_text(first)} implies {answer}",), f"from each `{first.text}` to a later `{second.text}`"
+        )
 
     def elapsed_between(self, durations: tuple[Duration, Duration], event: State) -> State | None:
         least, most = (self.elapsed(sign, time, event) for sign, time in zip((">=", "<="), durations, strict=True))

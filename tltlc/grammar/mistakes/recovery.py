@@ -27,7 +27,7 @@ from tltlc.grammar.mistakes.declaration_forms.reading import (
 from tltlc.grammar.mistakes.fragments import block_kind, declarations, is_first_on_line, lines
 from tltlc.grammar.tables import load
 
-_FIRST: Final = ("NAME", "LPAR", "ONCE", "HISTORICALLY", "PREVIOUSLY", "BEGINS", "ENDS")
+_FIRST: Final = ("NAME", "LPAR", "ONCE", "HISTORICALLY", "PREVIOUSLY", "BEGINS", "ENDS", "UNTIL")
 """The tokens with which a formula without its keyword begins, and which continue no clause of the line before."""
 _MOST_SENTENCES: Final = 20
 """The most errors of a text of which the clause is read as a sentence, so that a bad text is checked in time."""
