@@ -99,6 +99,24 @@ HELPS = {
     "the time between fire and spray is at most 5 s": (
         "write `keep begins fire implies eventually within 5 s spray` from each `fire` to a later `spray`"
     ),
+    "keep begins fire implies once at least 30 s ago spray": (
+        "write `keep begins fire implies time_holding(once spray) >= 30 s`"
+    ),
+    "finish fire and coins >= 20": (
+        "write `require eventually always (fire and coins >= 20)` if it must hold at the last step, "
+        "or `reach fire and coins >= 20` if once is enough"
+    ),
+    "reach (fire, spray, boss_dead) in any order then coins > 3": (
+        "write `reach fire then coins > 3` and `reach spray then coins > 3` and `reach boss_dead then coins > 3`"
+    ),
+    "when fire 3 times in phase is shift then spray within 1 min": (
+        "write `keep begins (phase is shift and times_since(fire, begins phase is shift) >= 3) "
+        "implies eventually within 1 min spray`"
+    ),
+    "keep fire implies no spray and no fire for the next 10 s": (
+        "write `keep fire implies always for 10 s not spray` and "
+        "`avoid (begins fire) then within 10 s (begins fire)` if the time is for both"
+    ),
     # Values of the step before, or of some time ago.
     "keep fire implies coins and lap unchanged": (
         "write `keep fire and previously fire implies coins == previous(coins) and lap == previous(lap)` "

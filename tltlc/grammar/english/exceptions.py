@@ -216,6 +216,14 @@ class Exceptions(Rules):
             return None
         return Asked(Answer("now", State(f"{term.text} {signs[change]} previous({term.text})")))
 
+    def once_ago(self, sign: str, duration: Duration, state: State) -> State | None:
+        """Return the condition of `once at least 3 s ago a`: some a was so long ago."""
+        if sign in ("<", "<="):
+            return self.once_within(duration, state)
+        if duration.is_steps:
+            return None
+        return State(f"time_holding(once {state.at(ATOM)}) {sign} {duration.text}")
+
     def once_within(self, duration: Duration, state: State) -> State:
         return State(f"once within {duration.text} {state.at(ATOM)}")
 

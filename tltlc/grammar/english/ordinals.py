@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from tltlc.grammar.english.answers import Asked
-from tltlc.grammar.english.rules import Reading, Rules, are_simple
+from tltlc.grammar.english.rules import Reading, Rules, are_simple, begun_text
 from tltlc.grammar.english.terminals import Term
 from tltlc.grammar.mistakes.sentences.states import ATOM, OR, State
 
@@ -32,6 +32,13 @@ class Ordinals(Rules):
     def avoid_second_ever(self, state: State) -> Reading | None:
         """Return the rule of `no second a`."""
         return Reading((f"keep times({state.text}) <= 1",)) if are_simple(state) else None
+
+    def counted_in(self, state: State, number: str, during: State) -> State | None:
+        """Return the step of `a 3 times in b`, where each b begins a new count."""
+        if not are_simple(state, during):
+            return None
+        count = f"times_since({state.text}, {begun_text(during)}) >= {number}"
+        return State(f"begins ({during.text} and {count})")
 
     def only_after_nth(self, state: State, number: str, event: State) -> Reading | None:
         """Return the rule of `a only after the third b`: that step, or a later one."""

@@ -10,7 +10,7 @@ from tltlc.grammar.english.conditions import Members
 from tltlc.grammar.english.events import Counted, Event, Held, as_state
 from tltlc.grammar.english.intervals import Intervals, changing, is_edge
 from tltlc.grammar.english.quantities import Duration
-from tltlc.grammar.english.rules import Reading, When, begun_text, never_held
+from tltlc.grammar.english.rules import Reading, When, are_simple, begun_text, never_held, not_again
 from tltlc.grammar.english.terminals import Term
 from tltlc.grammar.mistakes.sentences.answers import Answer
 from tltlc.grammar.mistakes.sentences.states import ATOM, OR, State, joined
@@ -72,6 +72,22 @@ class TwoRules(Intervals):
             return None
         either, both = (joined([one, other], operator).text for operator in ("or", "and"))
         return Reading((f"reach {either}", f"avoid {both}"), "if both must never hold together")
+
+    def no_two_for(self, when: When, event: Event, one: State, other: State, duration: Duration) -> Reading | None:
+        """Return the rules of `after a, no b and no c for 5 s`; a itself may be one of them, and come again later."""
+        state = as_state(event)
+        if state is None or duration.is_steps or not are_simple(one.negated(), other.negated()):
+            return None
+        clauses: list[str] = []
+        for denied in (one.negated(), other.negated()):
+            if begun_text(denied) == begun_text(state):
+                clauses += not_again(state, denied, duration.text)[0].clauses
+            else:
+                clauses.append(f"keep {state.at(OR)} implies always for {duration.text} not {denied.at(ATOM)}")
+        return Reading(tuple(clauses), "if the time is for both")
+
+    def implies_no_two_for(self, event: Event, one: State, other: State, duration: Duration) -> Reading | None:
+        return self.no_two_for("when", event, one, other, duration)
 
     # The time between two events.
 

@@ -35,6 +35,7 @@ def readings(clause: str) -> list[str]:
             "keep a implies (eventually within 6 s b) or (c until b)",
         ),
         ("keep once a since b", "keep once (a since b)", "keep (once a) since b"),
+        ("keep once (a or c) since b", "keep once ((a or c) since b)", "keep (once (a or c)) since b"),
         ("require always a until b", "require always (a until b)", "require (always a) until b"),
         (
             "keep a implies historically for 1 s b or c",

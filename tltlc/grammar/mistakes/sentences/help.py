@@ -187,7 +187,7 @@ def _may_miss(failure: ParseFailure, fix: Fix, words: Words) -> bool:
     It compares a value with that of the step before from some step on, or while something holds, and the first such
     step may not be meant. Or it says how long something lasts `unless` something else comes, which may also end that
     time, or `after` something, which may itself last. Or it counts what comes before the condition of its rule, too,
-    or leaves a condition out of what it counts.
+    or leaves a condition out of what it counts. Or it asks for a step of what play must finish with.
     """
     text = mended(failure, fix)
     answer = text.partition(" implies ")[2]
@@ -198,7 +198,8 @@ def _may_miss(failure: ParseFailure, fix: Fix, words: Words) -> bool:
     is_same = words.find(LASTING) is not None and keeps_values(text.partition(" implies ")[2])
     is_denied = " implies always for " in text and " not " in text and words.find(phrases("after")) is not None
     return (
-        is_compared
+        words.word(0) == "finish"
+        or is_compared
         or is_counted
         or is_joined
         or is_same

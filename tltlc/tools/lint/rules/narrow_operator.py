@@ -67,6 +67,8 @@ def _is_narrow(operand: Unary, op: str, source: SourceFile) -> bool:
     word = source.slice(operand.op_span)
     if isinstance(operand.operand, GroupExpr):
         inside = without_brackets(operand.operand)
+        if word == "once" and op == "since":
+            return True
         # The brackets of `eventually (a and b) or (c and d)` may be there because of `and` alone.
         if op != "or" or not isinstance(inside, BinaryExpr) or inside.op != "and":
             return False

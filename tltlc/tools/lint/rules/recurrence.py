@@ -122,13 +122,15 @@ def _either_until(part: BinaryExpr, view: FileView, goal: str, *, is_clause: boo
     strong = ScopedExpression(part, view.env)
     left, right = (operand_text(ScopedExpression(side, view.env)) for side in (part.left, part.right))
     weak = f"{left} weak_until {right}"
+    each = ""
     if is_clause:
+        each = f"; `keep begins {left} implies ({weak})` if that counts each time that `{left}` begins"
         strong_text, weak_text = f"require {strong.text}", f"require {weak}"
     else:
         strong_text, weak_text = operand_text(strong), f"({weak})"
     return (
         f"write `{strong_text}` if it must hold once, until `{goal}` comes, and `{goal}` must come; "
-        f"`{weak_text}` if `{goal}` need not come"
+        f"`{weak_text}` if `{goal}` need not come{each}"
     )
 
 
