@@ -117,6 +117,19 @@ HELPS = {
         "write `keep fire implies always for 10 s not spray` and "
         "`avoid (begins fire) then within 10 s (begins fire)` if the time is for both"
     ),
+    "keep fire for at most 3 s then not fire for 20 s": (
+        "write `avoid time_holding(fire) > 3 s` and `keep ends fire implies always for 20 s not fire`"
+    ),
+    "phase must be shift within 20 s of the start": "write `require eventually within 20 s phase is shift`",
+    "spray can only start if fire was true in the previous 3 s": "write `keep begins spray implies once within 3 s fire`",
+    "no fire while spray or within 2 s after spray": "write `keep once within 2 s spray implies not fire`",
+    "fire must be followed by spray before the next fire": "write `keep times_since(fire, spray) <= 1`",
+    "keep fire implies spray or boss_dead at least every 10 s": (
+        "write `keep time_holding(fire and not (spray or boss_dead)) < 10 s` "
+        "if play may end in the middle of that time, "
+        "or `keep fire implies eventually within 10 s (spray or boss_dead or not fire)` "
+        "if play must not end before `spray or boss_dead`"
+    ),
     # Values of the step before, or of some time ago.
     "keep fire implies coins and lap unchanged": (
         "write `keep fire and previously fire implies coins == previous(coins) and lap == previous(lap)` "

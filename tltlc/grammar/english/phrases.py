@@ -66,7 +66,7 @@ PHRASES: Final[Mapping[str, str]] = {
     "before_that": "before|first|beforehand|earlier|before that",
     "between": "between|in between",
     "never": "never|never ever|at no time|under no circumstances|not ever",
-    "avoid": "avoid|no|don't|do not|can't|cannot|forbid|prevent|without ever|must not|must never|should not|"
+    "avoid": "avoid|no|no more|don't|do not|can't|cannot|forbid|prevent|without ever|must not|must never|should not|"
     "should never|forbidden|illegal|disallowed|not allowed|may not|may never|mustn't|shouldn't|won't|"
     "can't be|cannot be|must not be|should not be|may not be|can't ever be|can never be",
     "must_not": _CANNOT,

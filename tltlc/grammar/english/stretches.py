@@ -7,7 +7,7 @@ from tltlc.grammar.english.answers import MOST_STEPS, Asked, is_negative
 from tltlc.grammar.english.events import Counted, Event, Held, as_state
 from tltlc.grammar.english.intervals import Intervals
 from tltlc.grammar.english.orders import Orders
-from tltlc.grammar.english.quantities import Duration
+from tltlc.grammar.english.quantities import Duration, Number, comparison
 from tltlc.grammar.english.rules import Goals, Reading, When, are_simple, begun_text, never_held
 from tltlc.grammar.english.terminals import Term
 from tltlc.grammar.mistakes.sentences.answers import Answer
@@ -32,6 +32,11 @@ class Stretches(Intervals, Orders):
     def must_stop_each(self, state: State, duration: Duration) -> _Found:
         stretch = self.keep_short(state, duration)
         return stretch if isinstance(stretch, Reading) else None
+
+    def reached_in_time(self, left: Number, right: Number, duration: Duration) -> _Found:
+        """Return the goal of `laps must reach 3 within 60 s`."""
+        goal = comparison(left, ">=", right)
+        return None if goal is None else self.reach_within(goal, duration)
 
     def avoid_straight(self, state: State, duration: Duration) -> Reading | None:
         """Return the rule of `never a for 3 steps in a row`."""

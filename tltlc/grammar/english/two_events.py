@@ -40,6 +40,32 @@ class TwoEvents(Rules):
             return None
         return Reading((f"keep times({state.text}) <= {int(number) - 1}",))
 
+    def followed_before_next(self, first: State, answer: State, again: State) -> Reading | None:
+        """Return the rule of `a is followed by b before the next a`."""
+        if first != again or not are_simple(first, answer):
+            return None
+        return Reading((f"keep times_since({first.text}, {answer.text}) <= 1",))
+
+    def avoid_during_and_after(self, state: State, during: State, duration: Duration, after: State) -> Reading | None:
+        """Return the rule of `no a while b or within 2 s after b`."""
+        if during != after or not are_simple(state, during):
+            return None
+        return Reading((f"keep once within {duration.text} {during.at(ATOM)} implies not {state.at(ATOM)}",))
+
+    def short_then_free(self, *parts: Event | State | Duration) -> Reading | None:
+        """Return the rules of `a for at most 3 s, then not a for 20 s`."""
+        *_, state, most, other, pause = parts
+        assert isinstance(state, State) and isinstance(other, State)
+        assert isinstance(most, Duration) and isinstance(pause, Duration)
+        if state != other or state.level > ATOM or most.is_steps:
+            return None
+        return Reading(
+            (
+                f"avoid time_holding({state.text}) > {most.text}",
+                f"keep ends {state.text} implies always for {pause.text} not {state.text}",
+            )
+        )
+
     # The time between them.
 
     def avoid_just_before(self, state: State, duration: Duration, event: State) -> Reading | None:
