@@ -121,7 +121,9 @@ HELPS = {
         "write `avoid time_holding(fire) > 3 s` and `keep ends fire implies always for 20 s not fire`"
     ),
     "phase must be shift within 20 s of the start": "write `require eventually within 20 s phase is shift`",
-    "spray can only start if fire was true in the previous 3 s": "write `keep begins spray implies once within 3 s fire`",
+    "spray can only start if fire was true in the previous 3 s": (
+        "write `keep begins spray implies once within 3 s fire`"
+    ),
     "no fire while spray or within 2 s after spray": "write `keep once within 2 s spray implies not fire`",
     "fire must be followed by spray before the next fire": "write `keep times_since(fire, spray) <= 1`",
     "keep fire implies spray or boss_dead at least every 10 s": (
