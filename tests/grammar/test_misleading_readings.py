@@ -125,6 +125,18 @@ HELPS = {
         "write `keep begins spray implies once within 3 s fire`"
     ),
     "no fire while spray or within 2 s after spray": "write `keep once within 2 s spray implies not fire`",
+    "no spray and no boss_dead until fire": "write `require not (spray or boss_dead) weak_until fire`",
+    "no spray or no boss_dead before fire": "write `require not (spray or boss_dead) weak_until fire`",
+    "keep fire implies no spray and no boss_dead until phase is menu": (
+        "write `keep fire implies (not (spray or boss_dead) weak_until phase is menu)`"
+    ),
+    "require health > initial(health) at the end": "write `require eventually always health > initial(health)`",
+    "while spray or boss_dead, fire at least every 5 s": (
+        "write `keep time_holding((spray or boss_dead) and not fire) < 5 s` "
+        "if play may end in the middle of that time, "
+        "or `keep spray or boss_dead implies eventually within 5 s (fire or not (spray or boss_dead))` "
+        "if play must not end before `fire`"
+    ),
     "fire must be followed by spray before the next fire": "write `keep times_since(fire, spray) <= 1`",
     "keep fire implies spray or boss_dead at least every 10 s": (
         "write `keep time_holding(fire and not (spray or boss_dead)) < 10 s` "

@@ -157,7 +157,7 @@ class Intervals(Rules):
         condition = as_state(event)
         if condition is None or when not in ("when", "while", "as long as"):
             return None
-        if condition.level > AND or every.state.level > OR:
+        if max(condition.level, every.state.level) > OR:
             return None
         duration = every.duration
         weak = _never_so_long(joined([condition, every.state.negated()], "and"), duration)

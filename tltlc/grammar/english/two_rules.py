@@ -73,6 +73,23 @@ class TwoRules(Intervals):
         either, both = (joined([one, other], operator).text for operator in ("or", "and"))
         return Reading((f"reach {either}", f"avoid {both}"), "if both must never hold together")
 
+    def no_two_until(self, when: When, event: Event, one: State, other: State, end: State) -> Reading | None:
+        """Return the rule of `after a, no b and no c until d`."""
+        state = as_state(event)
+        if state is None or not are_simple(one.negated(), other.negated(), end):
+            return None
+        both = joined([one.negated(), other.negated()], "or").text
+        return Reading((f"keep {state.at(OR)} implies (not ({both}) weak_until {end.at(ATOM)})",))
+
+    def implies_no_two_until(self, event: Event, one: State, other: State, end: State) -> Reading | None:
+        return self.no_two_until("when", event, one, other, end)
+
+    def neither_until(self, one: State, other: State, end: State) -> Reading | None:
+        if not are_simple(one.negated(), other.negated(), end):
+            return None
+        either = joined([one.negated(), other.negated()], "or").text
+        return Reading((f"require not ({either}) weak_until {end.at(ATOM)}",))
+
     def no_two_for(self, when: When, event: Event, one: State, other: State, duration: Duration) -> Reading | None:
         """Return the rules of `after a, no b and no c for 5 s`; a itself may be one of them, and come again later."""
         state = as_state(event)

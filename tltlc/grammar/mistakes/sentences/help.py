@@ -57,8 +57,12 @@ _ENGLISH_ALONE: Final = (
     ),
 )
 """Words whose meaning in English is not that of an operator, or more than that of a comparison."""
-_WITHOUT_REQUIRE: Final = phrases("change", "changes", "stay", "stays", "remain", "remains", "until within")
+_WITHOUT_REQUIRE: Final = phrases(
+    "change", "changes", "stay", "stays", "remain", "remains", "until within", "at the end"
+)
 """Words of a sentence behind `require` that need no `require`, which asks for something at the first step alone."""
+_DENIED_TWICE: Final = phrases("and no", "or no", "nor")
+"""Words before a second thing that is denied, which `not` before both does not say."""
 _GOALS: Final = ("reach ", "require eventually ")
 """What clauses begin with that ask for something once, as verbs do."""
 _TIMED: Final = (" implies always for ", " implies eventually ", "time_holding(")
@@ -199,6 +203,7 @@ def _may_miss(failure: ParseFailure, fix: Fix, words: Words) -> bool:
     is_denied = " implies always for " in text and " not " in text and words.find(phrases("after")) is not None
     return (
         words.word(0) == "finish"
+        or (words.find(_DENIED_TWICE) is not None and " and not " in text)
         or is_compared
         or is_counted
         or is_joined
