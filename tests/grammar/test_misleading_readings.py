@@ -8,6 +8,8 @@ from tests.grammar.phrases_as_typed import errors
 from tests.grammar.sentences import HEAD
 from tltlc import compile_text
 from tltlc.core.source import SourceFile
+from tltlc.grammar.english.contradictions import forbids_its_event
+from tltlc.grammar.mistakes.sentences.validity import is_valid
 from tltlc.monitor import Monitor
 
 HELPS = {
@@ -95,7 +97,9 @@ HELPS = {
     "never fire in phase menu unless spray in the last 2 s": (
         "write `keep fire and phase is menu implies once within 2 s spray`"
     ),
-    "fire and spray alternate": ("write `keep times_since(fire, spray) <= 1` and `keep times_since(spray, fire) <= 1`"),
+    "fire and spray alternate": (
+        "write `keep times_since(fire, begins spray) <= 1` and `keep times_since(spray, begins fire) <= 1`"
+    ),
     "the time between fire and spray is at most 5 s": (
         "write `keep begins fire implies eventually within 5 s spray` from each `fire` to a later `spray`"
     ),
@@ -125,6 +129,43 @@ HELPS = {
         "write `keep begins spray implies once within 3 s fire`"
     ),
     "no fire while spray or within 2 s after spray": "write `keep once within 2 s spray implies not fire`",
+    # What denies itself, or is denied.
+    "after fire, wait 3 s before fire": (
+        "write `avoid (begins fire) then within 3 s (begins fire)` "
+        "if it may last, and must not begin again in that time, "
+        "or `avoid fire then within 3 s fire` if no step with it may follow in that time, "
+        "or `keep ends fire implies always for 3 s not fire` if the time counts from its end"
+    ),
+    "phase is never shift more than twice": "write `keep times(phase is shift) <= 2`",
+    "phase is never menu for at least 3 s": "write `avoid time_holding(phase is menu) >= 3 s`",
+    "when fire, phase is never menu or shift": (
+        "write `avoid fire and (phase is menu or phase is shift)` for each step with `fire`, "
+        "or `keep fire implies always not (phase is menu or phase is shift)` if it holds from then on"
+    ),
+    "in the first 5 s, no fire": "write `require always for 5 s not fire`",
+    "when fire is out, spray": "write `keep not fire implies spray`",
+    "fire is gone within 5 s": "write `require eventually within 5 s not fire`",
+    "finish with lap == 3 and no fire": (
+        "write `require eventually always (lap == 3 and not fire)` if all of it is about the last step, "
+        "or `require eventually always lap == 3` and `avoid fire` if `fire` must never hold"
+    ),
+    "fire or spray but never both": (
+        "write `reach fire or spray` and `avoid fire and spray` if both must never hold together, "
+        "or `keep fire iff not spray` if one of them must hold at every step"
+    ),
+    "reach fire, spray or boss_dead then lap == 3": (
+        "write `and`, `or` or `then` instead, and put brackets around what belongs together"
+    ),
+    "fire is out for at most 3 s": "write `avoid time_holding(not fire) > 3 s`",
+    # Numbers that come to a value, and parts of numbers.
+    "when coins is reset to 0, spray": "write `keep begins coins == 0 implies spray`",
+    "when lap becomes 3, spray": "write `keep begins lap == 3 implies spray`",
+    "health gets to 0 within 5 s": (
+        "write `require eventually within 5 s health >= 0` if `health` comes to it from below, "
+        "or `require eventually within 5 s health <= 0` if `health` comes to it from above"
+    ),
+    "keep health / twice lap <= 1": "write `keep health / (2 * lap) <= 1`",
+    # What is denied twice, and what holds at the end.
     "no spray and no boss_dead until fire": "write `require not (spray or boss_dead) weak_until fire`",
     "no spray or no boss_dead before fire": "write `require not (spray or boss_dead) weak_until fire`",
     "keep fire implies no spray and no boss_dead until phase is menu": (
@@ -137,7 +178,7 @@ HELPS = {
         "or `keep spray or boss_dead implies eventually within 5 s (fire or not (spray or boss_dead))` "
         "if play must not end before `fire`"
     ),
-    "fire must be followed by spray before the next fire": "write `keep times_since(fire, spray) <= 1`",
+    "fire must be followed by spray before the next fire": "write `keep times_since(fire, begins spray) <= 1`",
     "keep fire implies spray or boss_dead at least every 10 s": (
         "write `keep time_holding(fire and not (spray or boss_dead)) < 10 s` "
         "if play may end in the middle of that time, "
@@ -219,3 +260,19 @@ def test_two_events_so_far_apart_are_said_to_be_forbidden() -> None:
         monitor = Monitor(fspa)
         verdicts = [monitor.step({"fire": step in (1, 31)}).verdict for step in range(40)]
         assert ("violated" not in verdicts) == is_kept
+
+
+@pytest.mark.parametrize(
+    "typed",
+    [
+        "after the first fire, no fire for 5 s",
+        "after the second fire, no fire",
+        "no fire before the second fire",
+        "fire only after the second fire",
+        "keep ends fire implies fire for at least 2 s",
+    ],
+)
+def test_no_help_forbids_what_the_sentence_speaks_of(typed: str) -> None:
+    for error in errors(SourceFile("a.tltl", f"{HEAD}spec s {{\n{typed}\n}}\n")):
+        offered = [text for text in (error.help or "").split("`")[1::2] if is_valid((text,))]
+        assert not forbids_its_event(offered)

@@ -279,3 +279,8 @@ def test_a_test_gives_the_atoms_from_which_others_follow() -> None:
 def test_a_test_cannot_give_what_follows_from_other_atoms() -> None:
     (error,) = errors(f'{CLOCK} spec s = F times(p) > 2 test "t" for s {{ step times(p) > 2 expect satisfied }}')
     assert (error.code, error.help) == ("TLT0218", "leave it out, and say in each step whether `p` holds")
+
+
+def test_a_time_within_a_number_of_steps_needs_a_fixed_clock() -> None:
+    (error,) = errors("clock varies signal p: bool spec s = G (total_time_within(p, 4 steps) <= 3 s)")
+    assert (error.code, error.title) == ("TLT0323", "`total_time_within` needs a fixed clock")

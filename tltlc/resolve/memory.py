@@ -244,6 +244,10 @@ def _of_formula(expr: CallExpr, env: Env) -> Quantity:
     if window is not None:
         texts.append(window[0])
     elif expr.name == "total_time_within":
+        if env.context.clock_varies:
+            title = "`total_time_within` needs a fixed clock"
+            advice = "declare one, e.g. `clock 60 Hz`, or begin the time at an event, e.g. `total_time_since(p, q)`"
+            raise problem("TLT0323", title, env.scope.source, expr.name_span, advice=advice)
         length, steps = _steps_back(expr, env)
         texts.append(length)
     name = f"{expr.name}({', '.join(texts)})"

@@ -87,7 +87,7 @@ _ONE_IN_TIME: Final = (
 )  # fmt: skip
 _ONE_COUNTED: Final = (
     _Pattern("reach times({a}) >= {n}", "{a} begins at least {n} times", "reach least least collect do get must"),
-    _Pattern("keep times({p}) <= {n}", "{p} begins at most {n} times", "most more never avoid max only up than keep"),
+    _Pattern("keep times({p}) <= {n}", "{p} begins at most {n} times", "most more avoid max only up than keep"),
 )
 _TWO: Final = (
     _Pattern("keep {t} implies {r}", "at each step with {t}, {r}",

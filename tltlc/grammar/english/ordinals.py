@@ -41,7 +41,7 @@ class Ordinals(Rules):
         return State(f"begins ({during.text} and {count})")
 
     def only_after_nth(self, state: State, number: str, event: State) -> Reading | None:
-        """Return the rule of `a only after the third b`: that step, or a later one."""
-        if not are_simple(state, event):
+        """Return the rule of `a only after the third b`: that step, or a later one; b is not a itself."""
+        if not are_simple(state, event) or state == event:
             return None
         return Reading((f"keep {state.at(OR)} implies times({event.text}) >= {number}",))

@@ -212,7 +212,8 @@ PHRASES: Final[Mapping[str, str]] = {
     "begins_first": "begins|start of|beginning of|begin of|onset of|starts of|beginnings of",
     "ends": "is lost|lost|gets lost|ends|end|ended|stops|stop|stopped|is over|goes down|turns off|"
     "is finished|disappears|turns false|"
-    "finishes|is out|is put out|goes out|is gone|fails|breaks down|is extinguished",
+    "finishes|is put out|goes out|fails|breaks down|is extinguished",
+    "is_out": "is out|is gone",
     "was_before": "was true before|on the step before|on step before|on the frame before|on frame before|"
     "at the step before|at step before|was true on step before",
     "ever": "ever|has ever happened|has happened|has already happened",
@@ -281,7 +282,7 @@ PHRASES: Final[Mapping[str, str]] = {
     "pause_of": "cooldown of|cooldown|pause of|pause of at least|wait at least|wait|gap of|gap of at least",
     "in_sequence": "consecutive|successive|next|another",
     "until_then": "until then|up to then|all the time until then|until that step|all the way|on the way|along the way",
-    "resets_to": "resets to|is reset to|is set to|gets set to|goes back to|is back to|is back at|becomes|drops to",
+    "resets_to": "resets to|is reset to|is set to|gets set to|goes back to|is back to|is back at",
     "in_row": "in a row|consecutively|in succession|successively|one after other|running",
     "means": "means|means that|implies that",
     "count_of": "count|number of|number of times",

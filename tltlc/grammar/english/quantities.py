@@ -133,7 +133,13 @@ class Quantities:
         return Number(f"{term.text} / 2", Term("REAL", term.text))
 
     def reset(self, term: Term, value: Number) -> State | None:
-        return comparison(self.variable(term), "==", value)
+        """Return the step of `x is reset to 0`."""
+        state = comparison(self.variable(term), "==", value)
+        if state is None:
+            return None
+        event = begun(state)
+        self.settled[event.text] = state
+        return event
 
     def half_before(self, term: Term, duration: Duration) -> Number | None:
         before = self.value_before(term, duration)
@@ -237,6 +243,9 @@ class Quantities:
         return Number(f"({number.text})", number.term)
 
     def arithmetic(self, *parts: Number | Term) -> Number:
+        *_, sign, right = parts
+        if sign.text in ("*", "/") and isinstance(right, Number) and any(s in right.text for s in (" * ", " / ")):
+            parts = (*parts[:-1], Number(f"({right.text})", right.term))
         text = " ".join(part.text for part in parts) if len(parts) > 2 else "".join(part.text for part in parts)
         numbers = [part for part in parts if isinstance(part, Number)]
         is_int = all(number.is_int or number.term is None for number in numbers) and any(n.is_int for n in numbers)

@@ -10,6 +10,7 @@ from tltlc.core.record import record
 from tltlc.grammar.english.alternatives import Alternatives
 from tltlc.grammar.english.arguments import with_read_arguments
 from tltlc.grammar.english.bounds import Bounds
+from tltlc.grammar.english.contradictions import forbids_its_event
 from tltlc.grammar.english.counts_since import CountsSince
 from tltlc.grammar.english.events import Crossing, as_state
 from tltlc.grammar.english.exceptions import Exceptions
@@ -175,7 +176,8 @@ def sentence_forms(words: Words) -> tuple[Form, ...]:
         at = stop
     if any(isinstance(part, Term) and part.kind in _CONTENT for part in parts):
         return ()  # no form would say all of it
-    return tuple(form for form in forms(parts) if is_valid((form.clause,)))
+    clauses = (form for form in forms(parts) if is_valid((form.clause,)))
+    return tuple(form for form in clauses if not forbids_its_event((form.clause,)))
 
 
 def _condition(parser: SentenceParser, terminals: Sequence[Term], start: int, rules: Rules) -> tuple[State | None, int]:
@@ -200,7 +202,7 @@ def _sentence(words: Words) -> Sentence:
 
 def sentence_of(parser: SentenceParser, terminals: Sequence[Term], words: Words) -> Sentence:
     """Return the readings of a sentence of these terminals; ``words`` has the names that its file declares."""
-    tree = parser.parse(terminals)
+    tree = parser.parse(_never_first(terminals))
     if tree is None:
         return Sentence()
     unique: dict[tuple[str, ...], Reading] = {}
@@ -213,7 +215,19 @@ def sentence_of(parser: SentenceParser, terminals: Sequence[Term], words: Words)
         unique.setdefault(reading.clauses, reading)
     if len(unique) > _MOST_READINGS:
         return Sentence()
+    for clauses in list(unique):
+        if is_valid(clauses) and forbids_its_event(clauses):
+            del unique[clauses]
     return Sentence(tuple(unique.values()), next(iter(rules.limits), ""))
+
+
+def _never_first(terminals: Sequence[Term]) -> list[Term]:
+    """Return `never mode is menu` for `mode is never menu`, which denies all that follows: `or play`, `for 3 s`."""
+    ordered = list(terminals)
+    for at, (name, verb, never) in enumerate(zip(ordered, ordered[1:], ordered[2:], strict=False)):
+        if name.kind == "ENUM" and (verb.text, never.text) == ("is", "never"):
+            ordered[at : at + 3] = [never, name, verb]
+    return ordered
 
 
 def _values(node: Any, rules: Rules) -> list[Any]:

@@ -48,10 +48,10 @@ class Rules(Answers):
             or second.condition
             or first.clauses[0].startswith("reach once ")
             or any(" or " in clause for clause in first.clauses)
+            or (second.clauses[0].startswith("avoid ") and " and " in second.clauses[0])  # c of `no a, no b and c`
+            or (" or " in second.clauses[0] and all(r.clauses[0].startswith("reach ") for r in (first, second)))
         ):
             return None
-        if second.clauses[0].startswith("avoid ") and " and " in second.clauses[0]:
-            return None  # `no a, no b and c` may ask for c
         what = "if that time is for the first of them alone" * first.clauses[0].startswith(_TIMED)
         return Reading((*first.clauses, *second.clauses), what)
 

@@ -35,8 +35,20 @@ class Stretches(Intervals, Orders):
 
     def reached_in_time(self, left: Number, right: Number, duration: Duration) -> _Found:
         """Return the goal of `laps must reach 3 within 60 s`."""
-        goal = comparison(left, ">=", right)
-        return None if goal is None else self.reach_within(goal, duration)
+        if left.is_int:
+            exact = comparison(left, "==", right)
+            return None if exact is None else self.reach_within(exact, duration)
+        readings = []
+        for sign, whence in ((">=", "below"), ("<=", "above")):
+            goal = comparison(left, sign, right)
+            found = None if goal is None else self.reach_within(goal, duration)
+            if isinstance(found, Reading):
+                readings.append(replace(found, condition=f"if `{left.text}` comes to it from {whence}"))
+        return readings
+
+    def gone_in_time(self, term: Term, duration: Duration) -> Reading:
+        """Return the goal of `the shield is gone within 5 s`."""
+        return Reading((f"require eventually within {duration.text} not {term.text}",))
 
     def avoid_straight(self, state: State, duration: Duration) -> Reading | None:
         """Return the rule of `never a for 3 steps in a row`."""

@@ -92,6 +92,10 @@ class TimedAnswers(Rules):
             return Asked(Answer("now", State(f"{first} and eventually within {duration.text} {second}", AND)), "", True)
         return super().within(state, duration)
 
+    def gone_within(self, term: Term, duration: Duration) -> Asked | list[Asked]:
+        """Return the answer of `the shield is gone within 5 s`: one step without it."""
+        return self.within(self.ends(term), duration)
+
     def within_first_lasting(self, duration: Duration, state: State, length: Duration) -> list[Asked]:
         """Return the readings of `within 3 s, b for 1 s`: it begins in that time, or is over in it."""
         state = self.settled.get(state.text, state)

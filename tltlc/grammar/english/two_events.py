@@ -5,9 +5,11 @@ from __future__ import annotations
 from tltlc.grammar.english.events import Event, as_state
 from tltlc.grammar.english.intervals import is_edge
 from tltlc.grammar.english.quantities import Duration
-from tltlc.grammar.english.rules import Reading, Rules, When, are_simple, begun_text
+from tltlc.grammar.english.rules import Reading, Rules, When, are_simple, begun_text, not_again
 from tltlc.grammar.english.terminals import Term
 from tltlc.grammar.mistakes.sentences.states import ATOM, OR, State, joined
+
+_Found = Reading | list[Reading] | None
 
 
 class TwoEvents(Rules):
@@ -30,7 +32,10 @@ class TwoEvents(Rules):
         if not are_simple(one, other) or one == other:
             return None
         return Reading(
-            (f"keep times_since({one.text}, {other.text}) <= 1", f"keep times_since({other.text}, {one.text}) <= 1")
+            (
+                f"keep times_since({one.text}, {begun_text(other)}) <= 1",
+                f"keep times_since({other.text}, {begun_text(one)}) <= 1",
+            )
         )
 
     def value_never_so_often(self, name: Term, value: Term, number: str) -> Reading | None:
@@ -44,7 +49,7 @@ class TwoEvents(Rules):
         """Return the rule of `a is followed by b before the next a`."""
         if first != again or not are_simple(first, answer):
             return None
-        return Reading((f"keep times_since({first.text}, {answer.text}) <= 1",))
+        return Reading((f"keep times_since({first.text}, {begun_text(answer)}) <= 1",))
 
     def avoid_during_and_after(self, state: State, during: State, duration: Duration, after: State) -> Reading | None:
         """Return the rule of `no a while b or within 2 s after b`."""
@@ -52,11 +57,8 @@ class TwoEvents(Rules):
             return None
         return Reading((f"keep once within {duration.text} {during.at(ATOM)} implies not {state.at(ATOM)}",))
 
-    def short_then_free(self, *parts: Event | State | Duration) -> Reading | None:
+    def short_then_free(self, state: State, most: Duration, other: State, pause: Duration) -> Reading | None:
         """Return the rules of `a for at most 3 s, then not a for 20 s`."""
-        *_, state, most, other, pause = parts
-        assert isinstance(state, State) and isinstance(other, State)
-        assert isinstance(most, Duration) and isinstance(pause, Duration)
         if state != other or state.level > ATOM or most.is_steps:
             return None
         return Reading(
@@ -68,20 +70,24 @@ class TwoEvents(Rules):
 
     # The time between them.
 
-    def avoid_just_before(self, state: State, duration: Duration, event: State) -> Reading | None:
-        """Return the rule of `no a in the 3 s before b`."""
+    def avoid_just_before(self, state: State, duration: Duration, event: State) -> _Found:
+        """Return the rule of `no a in the 3 s before b`; b may be another a."""
         if not are_simple(state, event):
             return None
+        if begun_text(state) == begun_text(event):
+            return not_again(event, state, duration.text)
         return Reading((f"keep {begun_text(event)} implies not once within {duration.text} {state.at(ATOM)}",))
 
-    def before_avoid(self, duration: Duration, event: State, state: State) -> Reading | None:
+    def before_avoid(self, duration: Duration, event: State, state: State) -> _Found:
         return self.avoid_just_before(state, duration, event)
 
-    def wait_before(self, when: When, event: Event, duration: Duration, state: State) -> Reading | None:
-        """Return the rule of `after a, wait 3 s before b`."""
+    def wait_before(self, when: When, event: Event, duration: Duration, state: State) -> _Found:
+        """Return the rule of `after a, wait 3 s before b`; b may be a itself, which then comes again."""
         start = as_state(event)
         if start is None or not are_simple(start, state):
             return None
+        if begun_text(start) == begun_text(state):
+            return not_again(start, state, duration.text)
         return Reading((f"keep {start.text} implies always for {duration.text} {state.negated().at(ATOM)}",))
 
     def time_between(self, first: State, second: State, sign: str, duration: Duration) -> Reading | None:

@@ -66,12 +66,24 @@ class TwoRules(Intervals):
         pairs = [joined([a, b], "and") for at, a in enumerate(states) for b in states[at + 1 :]]
         return Reading(tuple(f"avoid {pair.text}" for pair in pairs)) if len(pairs) <= _MOST_PAIRS else None
 
-    def reach_one_of_two(self, one: State, other: State) -> Reading | None:
+    def reach_one_of_two(self, one: State, other: State) -> _Found:
         """Return the rules of `reach either a or b but never both`, if that is about all of play."""
         if max(one.level, other.level) > ATOM:
             return None
         either, both = (joined([one, other], operator).text for operator in ("or", "and"))
-        return Reading((f"reach {either}", f"avoid {both}"), "if both must never hold together")
+        return [
+            Reading((f"reach {either}", f"avoid {both}"), "if both must never hold together"),
+            Reading((f"keep {one.text} iff {other.negated().text}",), "if one of them must hold at every step"),
+        ]
+
+    def at_end_without(self, state: State, absent: State) -> list[Reading]:
+        """Return the readings of `finish with a and no b`: at the last step alone, or at every step."""
+        both = joined([state, absent], "and").at(ATOM)
+        at_end, never = f"require eventually always {state.at(ATOM)}", f"avoid {absent.negated().text}"
+        return [
+            Reading((f"require eventually always {both}",), "if all of it is about the last step"),
+            Reading((at_end, never), f"if `{absent.negated().text}` must never hold"),
+        ]
 
     def no_two_until(self, when: When, event: Event, one: State, other: State, end: State) -> Reading | None:
         """Return the rule of `after a, no b and no c until d`."""

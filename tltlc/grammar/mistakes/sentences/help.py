@@ -54,6 +54,13 @@ _ENGLISH_ALONE: Final = (
         "again until",
         "again till",
         "again before",
+        "is never",
+        "is out",
+        "is gone",
+        "in first",
+        "in the first",
+        "of start",
+        "of the start",
     ),
 )
 """Words whose meaning in English is not that of an operator, or more than that of a comparison."""
@@ -196,7 +203,7 @@ def _may_miss(failure: ParseFailure, fix: Fix, words: Words) -> bool:
     text = mended(failure, fix)
     answer = text.partition(" implies ")[2]
     is_new = "times(" not in words.text
-    is_counted = is_new and "times(" in answer and " <= " in answer
+    is_counted = is_new and "times(" in answer and any(sign in answer for sign in (" <= ", " < "))
     is_joined = is_new and text.startswith("keep times(") and " and " in text
     is_compared = (" implies always " in text or " implies eventually within " in text) and "previous(" in text
     is_same = words.find(LASTING) is not None and keeps_values(text.partition(" implies ")[2])

@@ -1,0 +1,93 @@
+"""Find clauses that forbid what they speak of: `keep begins a implies always for 5 s not a`.
+
+A sentence about a later step of the same condition, such as `after the second a, no a`, would otherwise be read as
+one that asks for a and for not a at one step.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from tltlc.core.source import SourceFile
+from tltlc.grammar import lalr
+from tltlc.grammar.builder import Builder
+from tltlc.grammar.lexer import tokenize
+from tltlc.grammar.tables import load
+from tltlc.grammar.tree import BinaryExpr, CallExpr, Expr, GroupExpr, IsExpr, NameExpr, NumberExpr, Unary
+
+Literals = frozenset[tuple[str, bool]]
+"""Conditions, as they are written, and whether they hold."""
+_NONE: Literals = frozenset()
+
+
+def forbids_its_event(clauses: Sequence[str]) -> bool:
+    """Whether one of some clauses, which can be parsed, asks for a condition and its negation at one step."""
+    return any(_contradicts_itself(clause) for clause in clauses)
+
+
+def _contradicts_itself(clause: str) -> bool:
+    lexed = tokenize(clause)
+    node = lalr.run(load(), "clause", lexed.tokens, Builder(SourceFile("", clause, "text"), lexed.docs))
+    rule = node.value
+    if not isinstance(rule, BinaryExpr):
+        return False
+    if rule.op == "implies":
+        return _differ(_at_this_step(rule.left, clause), _at_this_step(rule.right, clause))
+    if rule.op in ("U", "W"):
+        counted = _counted(rule.right, clause)
+        return counted is not None and counted[1] > 1 and (counted[0], False) in _at_this_step(rule.left, clause)
+    return False
+
+
+def _differ(one: Literals, other: Literals) -> bool:
+    return any((text, not holds) in other for text, holds in one)
+
+
+def _at_this_step(expr: Expr, clause: str, *, holds: bool = True) -> Literals:
+    """Return conditions that hold, or do not, at each step at which an expression has a truth value."""
+    if isinstance(expr, GroupExpr):
+        return _at_this_step(expr.inner, clause, holds=holds)
+    if isinstance(expr, NameExpr | IsExpr | CallExpr):
+        return frozenset({(clause[expr.span.start : expr.span.end], holds)})
+    if isinstance(expr, Unary):
+        return _of_unary(expr, clause, holds=holds)
+    if isinstance(expr, BinaryExpr):
+        if (expr.op, holds) in (("and", True), ("or", False)):
+            return _at_this_step(expr.left, clause, holds=holds) | _at_this_step(expr.right, clause, holds=holds)
+        if expr.op in (">", ">=") and holds and isinstance(expr.left, CallExpr) and expr.left.name == "time_holding":
+            return _at_this_step(expr.left.arguments[0].value, clause)
+        if (expr.op, holds) == ("implies", False):
+            return _at_this_step(expr.left, clause) | _at_this_step(expr.right, clause, holds=False)
+    return _NONE
+
+
+def _of_unary(expr: Unary, clause: str, *, holds: bool) -> Literals:
+    """Return what holds at the step of `not p`, `begins p`, `ends p`, `always p`, and of `once p` if it is false."""
+    if expr.op == "not":
+        return _at_this_step(expr.operand, clause, holds=not holds)
+    if expr.op in ("begins", "ends") and holds:
+        counted = _counted(expr, clause)
+        if counted is not None:
+            return frozenset({(counted[0], True)})
+        return _at_this_step(expr.operand, clause, holds=expr.op == "begins")
+    is_from_now = expr.bound is None or expr.bound.low is None or expr.bound.low.value == 0.0
+    if is_from_now and (expr.op, holds) in (("G", True), ("H", True), ("historically", True), ("once", False)):
+        return _at_this_step(expr.operand, clause, holds=holds)
+    return _NONE
+
+
+def _counted(expr: Expr, clause: str) -> tuple[str, float] | None:
+    """Return p and n of `begins (times(p) >= n)`, and p and 1 of `begins (once p)`; None for others."""
+    if not isinstance(expr, Unary) or expr.op != "begins":
+        return None
+    inner = expr.operand.inner if isinstance(expr.operand, GroupExpr) else expr.operand
+    if isinstance(inner, Unary) and inner.op == "once" and inner.bound is None:
+        operand = inner.operand.inner if isinstance(inner.operand, GroupExpr) else inner.operand
+        return clause[operand.span.start : operand.span.end], 1
+    if not isinstance(inner, BinaryExpr) or inner.op != ">=" or not isinstance(inner.right, NumberExpr):
+        return None
+    call = inner.left
+    if not isinstance(call, CallExpr) or call.name != "times" or len(call.arguments) != 1:
+        return None
+    value = call.arguments[0].value
+    return clause[value.span.start : value.span.end], inner.right.value
