@@ -156,6 +156,9 @@ HELPS = {
     "reach fire, spray or boss_dead then lap == 3": (
         "write `and`, `or` or `then` instead, and put brackets around what belongs together"
     ),
+    "reach fire and coins >= 1, spray and coins >= 2, boss_dead in any order": (
+        "write `reach fire and coins >= 1` and `reach spray and coins >= 2` and `reach boss_dead`"
+    ),
     "fire is out for at most 3 s": "write `avoid time_holding(not fire) > 3 s`",
     # Numbers that come to a value, and parts of numbers.
     "when coins is reset to 0, spray": "write `keep begins coins == 0 implies spray`",

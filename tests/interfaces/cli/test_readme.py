@@ -20,6 +20,13 @@ def test_the_spec_of_the_readme_is_right(tltlc, inside: Path) -> None:  # type: 
         assert (outcome.status, "nothing to report" in outcome.err) == (0, True), outcome.err
 
 
+def test_the_signals_in_the_text_of_the_readme_can_be_declared(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
+    declared = re.findall(r"`(signal [^`]+)`", README)
+    assert len(declared) == 2
+    Path("signals.tltl").write_text("".join(f"{declaration}\n" for declaration in declared))
+    assert tltlc("check", "signals.tltl").status == 0
+
+
 def test_the_verdict_of_the_readme_is_current(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
     Path("leave.tltl").write_text(SPEC)
     recording, verdict = re.findall(r"```text\n(.*?)```", README, re.DOTALL)

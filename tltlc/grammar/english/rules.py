@@ -43,13 +43,13 @@ class Rules(Answers):
     """The meanings of the rules of the grammar."""
 
     def both_sentences(self, first: Reading, second: Reading) -> Reading | None:
+        are_goals = all(reading.clauses[0].startswith("reach ") for reading in (first, second))
         if (
-            first.condition
-            or second.condition
+            any(reading.condition for reading in (first, second))
             or first.clauses[0].startswith("reach once ")
             or any(" or " in clause for clause in first.clauses)
             or (second.clauses[0].startswith("avoid ") and " and " in second.clauses[0])  # c of `no a, no b and c`
-            or (" or " in second.clauses[0] and all(r.clauses[0].startswith("reach ") for r in (first, second)))
+            or (are_goals and (len(second.clauses) > 1 or " or " in second.clauses[0]))
         ):
             return None
         what = "if that time is for the first of them alone" * first.clauses[0].startswith(_TIMED)

@@ -8,7 +8,7 @@ from typing import Final
 from tltlc.automaton.finite.contradiction import unsatisfiable
 from tltlc.diagnostics.diagnostic import Label
 from tltlc.expression.tree import SignalValue, nodes
-from tltlc.grammar.tree import BinaryExpr, CallExpr, Clause, Unary
+from tltlc.grammar.tree import BinaryExpr, CallExpr, Clause, NumberExpr, Unary
 from tltlc.grammar.walk import operands, parts
 from tltlc.logic.formula import Formula, and_, not_
 from tltlc.logic.text.phrases import is_state
@@ -63,6 +63,9 @@ def _advice(clause: Clause, rule: ScopedExpression, kept: Formula, spec: SpecVie
         return "if it must end at some time, write `reach`, and what holds then"
     if not spec.declaration.block:
         return f"if it must come, write `eventually ({rule.text})`"
+    free = _of_window(rule)
+    if free:
+        return f"if it is about any such time of play, write `{free}`; for once, write `reach {rule.text}`"
     lasting = _lasting(rule)
     if lasting:
         return f"if it must last that long each time, write `{lasting}`; for once, write `reach {rule.text}`"
@@ -79,6 +82,22 @@ def _kept_text(clause: Clause, rule: ScopedExpression) -> str:
     if isinstance(rule.tree, Unary) and rule.tree.op == "not":
         return rule.with_tree(rule.tree.operand).text
     return f"not ({rule.text})" if isinstance(rule.tree, BinaryExpr) else f"not {rule.text}"
+
+
+def _of_window(rule: ScopedExpression) -> str:
+    """Return `keep total_time_within(not p, 10 s) <= 8 s` for the rule `total_time_within(p, 10 s) >= 2 s`; else ""."""
+    tree = rule.tree
+    if not isinstance(tree, BinaryExpr) or tree.op not in (">", ">="):
+        return ""
+    call, least = without_brackets(tree.left), without_brackets(tree.right)
+    if not isinstance(call, CallExpr) or call.name != "total_time_within" or not isinstance(least, NumberExpr):
+        return ""
+    window = without_brackets(call.arguments[1].value)
+    if not isinstance(window, NumberExpr) or window.unit != least.unit or window.value <= least.value:
+        return ""
+    event, length = (rule.with_tree(part) for part in (call.arguments[0].value, window))
+    sign, most = "<" if tree.op == ">" else "<=", window.value - least.value
+    return f"keep total_time_within(not {operand_text(event)}, {length.text}) {sign} {most:g} {least.unit}"
 
 
 def _lasting(rule: ScopedExpression) -> str:
