@@ -8,11 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from tltlc.core.source import SourceFile
-from tltlc.grammar import lalr
-from tltlc.grammar.builder import Builder
-from tltlc.grammar.lexer import tokenize
-from tltlc.grammar.tables import load
+from tltlc.grammar.mistakes.sentences.validity import parsed_clause
 from tltlc.grammar.tree import BinaryExpr, CallExpr, Expr, GroupExpr, IsExpr, NameExpr, NumberExpr, Unary
 
 Literals = frozenset[tuple[str, bool]]
@@ -21,14 +17,13 @@ _NONE: Literals = frozenset()
 
 
 def forbids_its_event(clauses: Sequence[str]) -> bool:
-    """Whether one of some clauses, which can be parsed, asks for a condition and its negation at one step."""
+    """Whether one of some clauses asks for a condition and its negation at one step."""
     return any(_contradicts_itself(clause) for clause in clauses)
 
 
 def _contradicts_itself(clause: str) -> bool:
-    lexed = tokenize(clause)
-    node = lalr.run(load(), "clause", lexed.tokens, Builder(SourceFile("", clause, "text"), lexed.docs))
-    rule = node.value
+    tree = parsed_clause(clause)
+    rule = tree.value if tree is not None else None
     if not isinstance(rule, BinaryExpr):
         return False
     if rule.op == "implies":

@@ -216,7 +216,7 @@ def sentence_of(parser: SentenceParser, terminals: Sequence[Term], words: Words)
     if len(unique) > _MOST_READINGS:
         return Sentence()
     for clauses in list(unique):
-        if is_valid(clauses) and forbids_its_event(clauses):
+        if forbids_its_event(clauses):
             del unique[clauses]
     return Sentence(tuple(unique.values()), next(iter(rules.limits), ""))
 
