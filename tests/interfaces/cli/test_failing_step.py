@@ -121,6 +121,23 @@ def test_a_long_formula_that_remains_is_cut_but_not_in_json(tltlc) -> None:  # t
     assert unmet.endswith("then goal_number_29, and avoid dead throughout.")
 
 
+def test_the_step_is_named_from_which_a_time_limit_counts(tltlc) -> None:  # type: ignore[no-untyped-def]
+    Path("boss.tltl").write_text(
+        "clock 10 Hz signal door: bool signal boss: bool\n"
+        "spec s { keep begins door implies eventually within 0.3 s boss }\n"
+    )
+    Path("run.csv").write_text("door,boss\n0,0\n0,0\n1,0\n1,0\n1,0\n1,0\n1,0\n")
+    assert tltlc("monitor", "boss.tltl", "run.csv").err.splitlines() == [
+        "boss.tltl:2: keep begins door implies eventually within 0.3 s boss",
+        "at step 6: boss is false",
+        "the clause asked for this from step 3 (0.2 s) on",
+        "what remained before: Whenever door begins, reach boss within 3 steps; and have boss now.",
+        "not accepted: violated at step 6 (0.5 s) of 7: `boss` does not hold, clause 1",
+    ]
+    document = json.loads(tltlc("monitor", "boss.tltl", "run.csv", "--json").out)
+    assert (document["failure"]["failed_step"], document["failure"]["asked_since"]) == (6, 3)
+
+
 def test_the_json_document_has_the_failure_in_fields(tltlc) -> None:  # type: ignore[no-untyped-def]
     document = json.loads(tltlc("monitor", "boss.tltl", trace("0,0,50", "1,0,50"), "--json").out)
     failure = document["failure"]
@@ -134,6 +151,7 @@ def test_the_json_document_has_the_failure_in_fields(tltlc) -> None:  # type: ig
         "line": 7,
         "atoms": {"boss_door": 1.0, "once sword": -1.0},
         "seconds": None,
+        "asked_since": None,
         "also": [],
     }
     assert [row["failed_step"] for row in document["rows"]] == [None, 2]

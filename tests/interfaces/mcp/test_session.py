@@ -103,6 +103,7 @@ def test_a_wrong_spec_is_found_explained_and_mended(tmp_path: Path) -> None:
                 "line": 9,
                 "atoms": {"seen": 1.0},
                 "unmet": "Reach distance < 2, and avoid seen throughout.",
+                "asked_since": None,
             }
             details = ["leave.tltl:9: avoid seen", "at step 3: seen is true"]
             assert all(line in text(result).splitlines() for line in details)

@@ -11,8 +11,8 @@ from tltlc.monitor.monitor import Monitor
 from tltlc.monitor.run import RunStep
 from tltlc.monitor.traces import TraceSample
 from tltlc.tools.judge.failing_step import FailingStep
-from tltlc.tools.judge.later_failures import KeptSamples, LaterFailure, later_failures
-from tltlc.tools.judge.step_times import StepTimes, seconds_text
+from tltlc.tools.judge.later_failures import LaterFailure, later_failures
+from tltlc.tools.judge.step_times import seconds_text
 
 
 class TraceFailure:
@@ -23,16 +23,12 @@ class TraceFailure:
     """
 
     def __init__(self, monitor: Monitor, spec: Input) -> None:
-        fspa = monitor.fspa
         self._monitor, self._spec, self._places = monitor, spec, spec.clause_places()
-        self._failing = FailingStep(monitor, self._places)
-        self._times = StepTimes(fspa)
-        self._kept = KeptSamples(fspa.signals, clock_varies=fspa.clock_varies) if len(self._places) > 1 else None
+        self._failing = FailingStep(monitor, self._places, spec.clauses)
 
     def watched(self, samples: Iterable[TraceSample]) -> Iterator[TraceSample]:
         """Yield the samples unchanged, and keep what the judgement needs of them."""
-        samples = self._failing.watched(self._times.watched(samples))
-        return samples if self._kept is None else self._kept.watched(samples)
+        return self._failing.watched(samples)
 
     def noted(self, rows: Iterable[RunStep]) -> Iterator[RunStep]:
         """Yield the steps unchanged, and keep what was measured at the one that fails."""
@@ -66,7 +62,7 @@ class TraceFailure:
         also = [
             {
                 "failed_step": later.step,
-                "seconds": self._times.seconds(later.step),
+                "seconds": self._failing.seconds(later.step),
                 "failed_clause": self._monitor.fspa.clauses[later.clause],
                 "clause": later.clause + 1,
                 "file": self._places[later.clause].file,
@@ -74,14 +70,14 @@ class TraceFailure:
             }
             for later in self._later()
         ]
-        return {**values, "seconds": self._times.seconds(failed.step), "also": also}
+        return {**values, "seconds": self._failing.seconds(failed.step), "also": also}
 
     def _later(self) -> tuple[LaterFailure, ...]:
         failed = self._monitor.failure
-        if self._kept is None or failed is None or failed.cause is None:
+        if len(self._places) < 2 or failed is None or failed.cause is None:
             return ()
         texts = self._monitor.fspa.clauses
-        return later_failures(self._spec.clauses(), texts, self._kept.all(), failed.cause.clause)
+        return later_failures(self._spec.clauses(), texts, self._failing.samples(), failed.cause.clause)
 
     def _time_text(self, step: int) -> str:
-        return seconds_text(self._times.seconds(step))
+        return seconds_text(self._failing.seconds(step))

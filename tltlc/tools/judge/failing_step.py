@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import Any, Final
 
 from tltlc.automaton.memory import schedule
@@ -15,7 +15,11 @@ from tltlc.monitor.monitor import Monitor
 from tltlc.monitor.run import RunStep
 from tltlc.monitor.traces import TraceSample
 from tltlc.program.flags import Flags
+from tltlc.tools.judge.asked_since import asked_since
+from tltlc.tools.judge.clauses import Clauses
+from tltlc.tools.judge.kept_samples import KeptSamples
 from tltlc.tools.judge.measures import measure, short_number
+from tltlc.tools.judge.step_times import StepTimes, seconds_text
 from tltlc.tools.judge.step_values import StepValue, enum_of, signal_value
 
 _MEMORY: Final = ("once", "historically", "since", "previously", "last")
@@ -33,19 +37,24 @@ class ClausePlace:
 class FailingStep:
     """Notes the step at which a trace fails: what was measured there.
 
-    ``places`` are the places of the clauses of the spec, none if they are not known.
+    ``places`` are the places of the clauses of the spec, none if they are not known; then ``clauses`` is not called.
+    ``clauses`` returns automata for the single clauses.
     """
 
-    def __init__(self, monitor: Monitor, places: Sequence[ClausePlace]) -> None:
-        self._monitor, self._places = monitor, places
+    def __init__(self, monitor: Monitor, places: Sequence[ClausePlace], clauses: Callable[[], Clauses]) -> None:
+        self._monitor, self._places, self._clauses = monitor, places, clauses
+        self._times = StepTimes(monitor.fspa)
+        self._kept = KeptSamples(monitor.fspa.signals, clock_varies=monitor.fspa.clock_varies)
         self._sample: TraceSample = {}
         self._values: tuple[float, ...] = ()
         self._known: dict[str, float] = {}
 
     def watched(self, samples: Iterable[TraceSample]) -> Iterator[TraceSample]:
-        """Yield the samples unchanged, and keep the last one."""
-        for self._sample in samples:
-            yield self._sample
+        """Yield the samples unchanged, and keep what the judgement needs of them."""
+        timed = self._times.watched(samples)
+        for sample in self._kept.watched(timed) if self._places else timed:
+            self._sample = sample
+            yield sample
 
     def noted(self, rows: Iterable[RunStep]) -> Iterator[RunStep]:
         """Yield the steps unchanged, and keep what was measured at the one that fails."""
@@ -56,8 +65,16 @@ class FailingStep:
                 self._known = {**self._sample, **dict(zip(names, self._monitor.registers, strict=True))}
             yield row
 
+    def samples(self) -> list[TraceSample]:
+        """Return the samples that the monitor has taken, in order; none if the places of the clauses are not known."""
+        return self._kept.all() if self._places else []
+
+    def seconds(self, step: int) -> float | None:
+        """Return the time of a step that was read; ``step`` counts from 1. None if the spec has no clock."""
+        return self._times.seconds(step)
+
     def details(self) -> Iterator[str]:
-        """Yield lines with the clause, the values of the atoms and signals, and what remained before the step."""
+        """Yield lines: the clause, the values of the atoms and signals, since when it asked, and what remained."""
         fspa, failed = self._monitor.fspa, self._monitor.failure
         if failed is None or failed.cause is None:
             return
@@ -69,13 +86,17 @@ class FailingStep:
         values = dict.fromkeys(value for atom, _ in failed.cause.prime for value in self._values_of(atom))
         if values:
             yield f"at step {failed.step}: {', '.join(value.text for value in values)}"
+        since = self._asked_since()
+        if since is not None:
+            yield f"the clause asked for this from step {since}{seconds_text(self.seconds(since))} on"
         yield f"what remained before: {shortened(unmet_words(fspa, failed))}"
 
     def values(self) -> dict[str, Any] | None:
         """Return the failure as JSON values; None if the trace does not fail.
 
         ``clause`` is the number of the clause, from 1. ``atoms`` has the values of the atoms that decide the
-        failure, and ``unmet`` says in words what remained before it.
+        failure, and ``unmet`` says in words what remained before it. ``asked_since`` is the step, from 1, at which the
+        clause began to ask for what failed, as :func:`asked_since` returns it.
         """
         fspa, failed = self._monitor.fspa, self._monitor.failure
         if failed is None:
@@ -92,7 +113,14 @@ class FailingStep:
             "line": None if place is None else place.line,
             "atoms": {fspa.atoms[atom].name: self._values[atom] for atom, _ in prime},
             "unmet": unmet_words(fspa, failed),
+            "asked_since": self._asked_since(),
         }
+
+    def _asked_since(self) -> int | None:
+        failed = self._monitor.failure
+        if failed is None or not self._places:
+            return None
+        return asked_since(self._clauses(), self._monitor.fspa.clauses, self.samples(), failed)
 
     def _values_of(self, atom: int) -> tuple[StepValue, ...]:
         """Return the value of an atom, or for a comparison the values that it compares."""

@@ -129,7 +129,7 @@ def _failing_step(compiled: Input, trace: JudgedTrace, data: bytes | None) -> Fa
         return None
     fspa = compiled.only_automaton()
     monitor = Monitor(fspa)
-    failing = FailingStep(monitor, compiled.clause_places())
+    failing = FailingStep(monitor, compiled.clause_places(), compiled.clauses)
     # The file may have changed since it was judged.
     with suppress(TltlError):
         samples = _samples(fspa, trace.name, _trace_file(trace.name) if data is None else data)
@@ -173,7 +173,17 @@ _CAUSE: Final = {
 
 _FAILURE: Final = {
     "type": ["object", "null"],
-    "required": ["failed_step", "failed_clause", "failed_atom", "clause", "file", "line", "atoms", "unmet"],
+    "required": [
+        "failed_step",
+        "failed_clause",
+        "failed_atom",
+        "clause",
+        "file",
+        "line",
+        "atoms",
+        "unmet",
+        "asked_since",
+    ],
     "properties": {
         "failed_step": {"type": "integer", "minimum": 1},
         "failed_clause": {"type": ["string", "null"], "description": "the clause to blame, if it is a single one"},
@@ -187,6 +197,11 @@ _FAILURE: Final = {
             "description": "the values of the atoms that decided; an atom holds if its value is above 0",
         },
         "unmet": {"type": "string", "description": "what remained to be satisfied before this step, in words"},
+        "asked_since": {
+            "type": ["integer", "null"],
+            "minimum": 1,
+            "description": "the step at which the clause began to ask for what failed: its time limit counts from here",
+        },
     },
     "description": "of a single trace: the step that broke the spec; null if no step did",
 }
