@@ -7,7 +7,7 @@ import pickle
 
 import pytest
 
-from tltlc.core.names import ComparisonName, full_name, split_name
+from tltlc.core.names import ComparisonName, full_name, split_name, with_calls
 from tltlc.logic.formula import and_, atom, not_
 from tltlc.logic.text.phrases import phrase
 
@@ -48,6 +48,19 @@ def test_the_name_of_a_comparison_knows_its_sides(name: str, sides: tuple[str, s
         assert isinstance(comparison, ComparisonName)
         assert (comparison.left, comparison.operator, comparison.right) == sides
         assert comparison == name
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        ("times(!a)", "times(not a)"),
+        ("2 * times(!a) + abs(x - times(!a))", "2 * times(not a) + abs(x - times(not a))"),
+        ("my.times(!a) + times(!b) + times(!a", "my.times(!a) + times(!b) + times(!a"),
+        ("hp", "hp"),
+    ],
+)
+def test_calls_in_a_name_get_other_texts(name: str, words: str) -> None:
+    assert with_calls(name, {"times(!a)": "times(not a)"}.get) == words
 
 
 @pytest.mark.parametrize("name", ["near(s1)", "a<b", "a > b > c", "> 3", "once (hp > 3)", "(p since (hp > 3))"])

@@ -7,7 +7,7 @@ import pytest
 from tltlc import compile_text
 from tltlc.automaton.fspa import Fspa
 from tltlc.automaton.memory_phrases import spoken
-from tltlc.automaton.text import formula_text, label_text
+from tltlc.automaton.text import formula_text, label_range_text, label_text
 from tltlc.backends import emit
 from tltlc.core.source import SourceFile
 from tltlc.logic.formula import Formula, atom, not_
@@ -45,8 +45,24 @@ def _fspa(clause: str) -> Fspa:
         ("keep times(seen and alarm) <= 3", "Keep (seen and alarm) at most 3 times throughout."),
         ("keep times(not seen) <= 3", "Keep not seen at most 3 times throughout."),
         ("keep hp >= previous(hp)", "Keep hp >= the previous hp throughout."),
-        # These keep their names: they are sums.
+        # These keep their names, with conditions in words: they are sums.
         ("keep times(seen, 9) + times(alarm, 9) <= 3", "Keep times(seen, 9) + times(alarm, 9) <= 3 throughout."),
+        (
+            "keep times(not seen, 9) + times(hp > 3 and not alarm, 9) <= 3",
+            "Keep times(not seen, 9) + times(hp > 3 and not alarm, 9) <= 3 throughout.",
+        ),
+        (
+            "keep abs(hp - value_at(hp, not seen)) <= 3",
+            "Keep abs(hp - value_at(hp, not seen)) <= 3 throughout.",
+        ),
+        (
+            "keep times_since(not seen, begins alarm, 9) <= hp",
+            "Keep times_since(not seen, begins alarm, 9) <= hp throughout.",
+        ),
+        (
+            "keep begins (not seen or alarm) implies hp > 3",
+            "Whenever (not seen or alarm) begins, have hp > 3 at that step.",
+        ),
     ],
 )
 def test_formulas_with_memory_read_well(clause: str, english: str) -> None:
@@ -60,6 +76,26 @@ def test_labels_use_the_same_words_and_other_notations_the_names() -> None:
     fspa = _fspa("reach seen then time_holding(near(e)) >= 3 s")
     assert label_text(fspa, 1) == "Reach near(e) for at least 3 s."
     assert label_text(fspa, 1, "ascii") == "F !(time_holding(near(e)) < 3)"
+
+
+@pytest.mark.parametrize(
+    ("event", "words"),
+    [
+        ("begins (time_holding(not seen) >= 3 s)", "(not seen for at least 3 s) begins"),
+        ("begins (not seen and hp > 3)", "(not seen and hp > 3) begins"),
+        ("ends (not seen and hp > 3)", "(not seen and hp > 3) ends"),
+        ("begins (not seen or hp > 3)", "(not seen or hp > 3) begins"),
+    ],
+)
+def test_labels_say_what_begins_and_ends(event: str, words: str) -> None:
+    fspa = _fspa(f"keep {event} implies eventually within 5 steps alarm")
+    assert label_text(fspa, 0).startswith(f"Whenever {words}, reach alarm within")
+
+
+def test_the_labels_of_states_that_share_a_row_are_in_words() -> None:
+    fspa = _fspa("keep time_holding(not seen) >= 3 s and hp > 3 implies eventually within 5 steps alarm")
+    rule = "Whenever not seen for at least 3 s and hp > 3, reach alarm within 5 steps"
+    assert label_range_text(fspa, 2, 3) == f"{rule}; and reach alarm within 3…2 steps."
 
 
 def test_labels_list_the_rules_one_by_one() -> None:

@@ -7,6 +7,7 @@ atom without words of its own, such as that of a sum of counts, keeps its name.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from functools import cached_property
 from typing import Final
 
 from tltlc.automaton.chain_phrases import chain_phrase, chains, in_order
@@ -39,7 +40,7 @@ from tltlc.automaton.value_phrases import (
     was_phrase,
     window_text,
 )
-from tltlc.core.names import ComparisonName, SpokenName
+from tltlc.core.names import ComparisonName, SpokenName, full_name, split_name, with_calls
 from tltlc.expression.tree import Before, SignalValue
 from tltlc.logic.formula import TRUE, Formula, always, and_, atom, eventually, implies, not_, or_, rebuild
 from tltlc.logic.implication import complement
@@ -50,6 +51,29 @@ from tltlc.resolve.spec import Atom, Register
 
 _UNTIL: Final = ("passed", "lasted", "over", "recent", "lately")
 """The bases of the names of timers that say until when something must happen, or how long it must last."""
+_CONDITIONS: Final = {
+    "times": 1,
+    "times_within": 1,
+    "times_since": 2,
+    "time_since": 1,
+    "time_holding": 1,
+    "total_time": 1,
+    "total_time_since": 2,
+    "highest_since": 1,
+    "lowest_since": 1,
+    "value_at": 1,
+}
+"""How many arguments of a function of the past are conditions, by the kind of its register."""
+_OPPOSITE_FACTS: Final = {
+    "once": "{0} all along",
+    "historically": "{0} now or before",
+    "since": "{0} since {1} or no {1} so far",
+    "previously": "{0} at the step before",
+}
+"""What holds where ``once p``, ``historically p``, ``p since q`` or ``previously p`` does not.
+
+0 stands for the opposite of p, and 1 for q. ``previously p`` does not hold at the first step, either.
+"""
 _COUNTING: Final = frozenset({"samples", "elapsed", "time_since", "age"})
 """The kinds of the registers that these timers read."""
 
@@ -94,6 +118,38 @@ class Speaker:
             )
         return done[node]
 
+    def is_about_past(self, name: str) -> bool:
+        """Whether an atom is a condition on the steps so far, such as "seen since alarm", and no comparison."""
+        return not isinstance(self._atoms[name].base, ComparisonName) and self._phrase(name) is not None
+
+    def fact(self, name: str, *, holds: bool, is_first: bool) -> str | None:
+        """Return what an atom about the past says where it holds, or where not; None if it has no opposite in words.
+
+        ``!seen since alarm`` fails where "seen since alarm or no alarm so far" holds. ``is_first`` says whether
+        it is the first step.
+        """
+        words = self._phrase(name)
+        if words is None:
+            return None
+        if words.fails is not None:
+            return words.holds if holds else words.fails
+        denied = self._opposite_fact(self._atoms[name], is_first=is_first)
+        return words.holds if holds and denied is not None else denied
+
+    def _opposite_fact(self, item: Atom, *, is_first: bool) -> str | None:
+        """Return what holds where an atom about the past does not; None unless it is about a negation or comparison."""
+        register = self._register_of(item)
+        formulas = past_operands(register)
+        if item.name in self._before and not is_first:
+            formulas = (self._before[item.name],)
+        if formulas is None or not (formulas[0].op == "not" or self._is_comparison(formulas[0])):
+            return None
+        words = [self.object_text(formula) for formula in (opposite(formulas[0]), *formulas[1:])]
+        return _OPPOSITE_FACTS[register.kind].format(*words)
+
+    def _is_comparison(self, state: Formula) -> bool:
+        return state.op == "atom" and isinstance(self._atoms[state.name].base, ComparisonName)
+
     # --- formulas ---------------------------------------------------------------------------------
 
     def _is_rule(self, part: Formula) -> bool:
@@ -110,18 +166,25 @@ class Speaker:
         return atom(words.holds)
 
     def _turning(self, node: Formula, done: Mapping[Formula, Formula]) -> Formula | None:
-        """Return ``seen & !previously seen & x`` as "seen begins" and x, and the reverse as "seen ends"; else None."""
+        """Return ``seen & !previously seen & x`` as "seen begins" and x, and the reverse as "seen ends"; else None.
+
+        ``!seen | previously seen | F x`` is its negation or ``F x``.
+        """
         turn = self._turn(node.args[0]) if node.op == "not" else None
         if turn is not None:
             return atom(f"{turn[0]} does not {turn[1]}")
-        if node.op != "and":
+        # In a label, "whenever seen begins, x" is `!seen | previously seen | x`.
+        is_denied = node.op == "or" and not all(map(is_state, node.args))
+        if node.op != "and" and not is_denied:
             return None
         parts = list(node.args)
         edges: list[Formula] = []
-        for operand, verb, members in self._edges():
-            if all(part in parts for part in members):
-                parts = [part for part in parts if part not in members]
-                edges.append(atom(f"{self.object_text(operand)} {verb}s"))
+        for operand, verb, members in self._edges:
+            said = tuple(map(opposite, members)) if is_denied else members
+            if all(part in parts for part in said):
+                parts = [part for part in parts if part not in said]
+                begins = atom(f"{self.object_text(operand)} {verb}s")
+                edges.append(not_(begins) if is_denied else begins)
         if not edges:
             return None
         rest = [done[part] for part in parts]
@@ -224,8 +287,44 @@ class Speaker:
         if name not in self._phrases:
             item = self._atoms.get(name)
             read = [] if item is None else self._read(item)
-            self._phrases[name] = self._phrase_of(item, read[0]) if item is not None and len(read) == 1 else None
+            words = self._phrase_of(item, read[0]) if item is not None and len(read) == 1 else None
+            self._phrases[name] = words if words is not None or item is None else self._comparison(item)
         return self._phrases[name]
+
+    def _comparison(self, item: Atom) -> Phrase | None:
+        """Return a comparison of sums, or of two values, with the conditions in it in words; None for other atoms."""
+        name = item.base
+        if item.timer is not None or not isinstance(name, ComparisonName):
+            return None
+        left, right = self.quantity_text(name.left), self.quantity_text(name.right)
+        if (left, right) == (name.left, name.right):
+            return None
+        comparison = ComparisonName(left, name.operator, right)
+        return Phrase(comparison, comparison.opposite)
+
+    def quantity_text(self, text: str) -> str:
+        """Return a side of a comparison with the conditions in it in words: ``times(not a)`` for ``times(!a)``."""
+        return with_calls(text, self._call_text) if self._registers else text
+
+    def _call_text(self, call: str) -> str | None:
+        """Return a call of a function of the past in words; None for calls that are not about a condition."""
+        base, arguments = split_name(call)
+        # A maximum is left out of the name of the register.
+        register = self._registers.get(call) or self._registers.get(full_name(base, arguments[:-1]))
+        if register is None or register.kind not in _CONDITIONS:
+            return None
+        # `value_at(x, q)` and its like have a value before their condition.
+        first = int(register.kind in VALUES)
+        formulas = (counted(register, self._registers), counted_since(register))
+        words = [self._argument_text(formula) for formula in formulas if formula is not None]
+        if len(words) != _CONDITIONS[register.kind]:
+            return None
+        return full_name(base, (*arguments[:first], *words, *arguments[first + len(words) :]))
+
+    def _argument_text(self, state: Formula) -> str:
+        """Return a formula as an argument of a function: "begins damage" where it begins to hold."""
+        turn = self._turn(state)
+        return phrase(self.spoken(state)) if turn is None else f"{turn[1]}s {turn[0]}"
 
     def _phrase_of(self, item: Atom, register: Register) -> Phrase | None:
         """Return the phrase of an atom that reads one register; None if it has none."""
@@ -277,7 +376,7 @@ class Speaker:
             time = f"{border:g} s"
         if is_recent:
             return Phrase(SpokenName(f"{self.object_text(operand)} in the last {time}", is_past=True))
-        fails = SpokenName(f"a step with {self.object_text(operand)} in the last {time}", "have")
+        fails = SpokenName(f"a step with {self.object_text(opposite(opposite(operand)))} in the last {time}", "have")
         return Phrase(SpokenName(f"{self.object_text(opposite(operand))} for the last {time}", is_past=True), fails)
 
     def _timer_phrase(self, item: Atom, register: Register, texts: tuple[str, str]) -> Phrase:
@@ -374,17 +473,25 @@ class Speaker:
 
     def _turn(self, state: Formula) -> tuple[str, str] | None:
         """Return what begins or ends in a state, and "begin" or "end"; None for other states."""
-        for operand, verb, members in self._edges() if state.op == "and" else ():
+        for operand, verb, members in self._edges if state.op == "and" else ():
             if set(state.args) == set(members):
                 return self.object_text(operand), verb
         return None
 
-    def _edges(self) -> Iterator[tuple[Formula, str, tuple[Formula, ...]]]:
-        """Yield each formula that is remembered, "begin" or "end", and the parts of a conjunction that say so."""
-        for name, operand in self._before.items():
-            now = operand.args if operand.op == "and" else (operand,)
-            yield operand, "begin", (*now, not_(atom(name)))
-            yield operand, "end", (opposite(operand), atom(name))
+    @cached_property
+    def _edges(self) -> tuple[tuple[Formula, str, tuple[Formula, ...]], ...]:
+        """Each formula that is remembered, "begin" or "end", and the parts of a conjunction that say so."""
+        return tuple(self._found_edges())
+
+    def _found_edges(self) -> Iterator[tuple[Formula, str, tuple[Formula, ...]]]:
+        for name, read in self._before.items():
+            # `!a | b` is read back as `a -> b`.
+            for operand in (read, or_(opposite(read.args[0]), read.args[1])) if read.op == "implies" else (read,):
+                now = operand.args if operand.op == "and" else (operand,)
+                yield operand, "begin", (*now, not_(atom(name)))
+                yield operand, "end", (opposite(operand), atom(name))
+                denied = negation_normal_form(not_(operand))
+                yield operand, "end", (*(denied.args if denied.op == "and" else (denied,)), atom(name))
 
     # --- registers --------------------------------------------------------------------------------
 

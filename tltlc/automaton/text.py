@@ -63,7 +63,7 @@ def label_range_text(fspa: Fspa, first: int, last: int, notation: Notation = "en
     texts = _shown_label(fspa, first, notation), _shown_label(fspa, last, notation)
     if texts[0] == texts[1]:
         return texts[0]
-    first_label, last_label = (_shown(fspa.states[state].label, notation) for state in (first, last))
+    first_label, last_label = (_shown(fspa, state, notation) for state in (first, last))
     if isinstance(first_label, Formula) and isinstance(last_label, Formula):
         endless = fspa.semantics == "infinite"
         text = range_text(
@@ -77,12 +77,15 @@ def label_range_text(fspa: Fspa, first: int, last: int, notation: Notation = "en
 def _shown_label(fspa: Fspa, state: int, notation: Notation) -> str:
     if notation == "english":
         return label_text(fspa, state)
-    return _text(_shown(fspa.states[state].label, notation), notation, endless=fspa.semantics == "infinite")
+    return _text(_shown(fspa, state, notation), notation, endless=fspa.semantics == "infinite")
 
 
-def _shown(label: Formula | Text, notation: Notation) -> Formula | Text:
-    """Return a label for people. English sentences of labels write opposite comparisons by themselves."""
-    return label if isinstance(label, Text) or notation == "english" else with_opposites(label)
+def _shown(fspa: Fspa, state: int, notation: Notation) -> Formula | Text:
+    """Return the label of a state for people. English sentences write opposite comparisons by themselves."""
+    label = fspa.states[state].label
+    if notation == "english":
+        return _in_words(label, fspa)
+    return label if isinstance(label, Text) else with_opposites(label)
 
 
 def guard_text(guard: Guard, notation: Notation = "ascii") -> str:

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from typing import Final
 
 _BASE: Final = re.compile(r"[^\W\d][\w.]*\(")
+_CALL: Final = re.compile(r"(?<![\w.])[^\W\d][\w.]*\(")
 _BRACKETS: Final = {"(": 1, ")": -1}
 _SIGNS: Final = re.compile(" (<|>|==) ")
 _CHOICE: Final = re.compile(r"([^\W\d][\w.]*(?:\([^()]*\))?) (is) ([^\W\d]\w*)")
@@ -103,6 +105,25 @@ def split_name(name: str) -> tuple[str, tuple[str, ...]]:
             arguments.append(name[start:index])
             start = index + 2
     return (name[: head.end() - 1], tuple(arguments)) if depth == 0 and all(arguments) else (_whole(name), ())
+
+
+def with_calls(name: str, call_text: Callable[[str], str | None]) -> str:
+    """Return a name with other texts for the calls in it: ``2 * times(not a)`` for ``2 * times(!a)``.
+
+    ``call_text`` gets each call, such as ``times(!a)``, and returns its text; for None, the calls in its
+    arguments get theirs.
+    """
+    parts: list[str] = []
+    place = 0
+    while (head := _CALL.search(name, place)) is not None:
+        depth, end = 1, head.end()
+        while depth and end < len(name):
+            depth += _BRACKETS.get(name[end], 0)
+            end += 1
+        text = call_text(name[head.start() : end]) if not depth else None
+        parts += [name[place : head.end()]] if text is None else [name[place : head.start()], text]
+        place = head.end() if text is None else end
+    return "".join([*parts, name[place:]])
 
 
 def _whole(name: str) -> str:

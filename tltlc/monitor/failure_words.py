@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from typing import Final
 
 from tltlc.automaton.fspa import Fspa
-from tltlc.automaton.memory_phrases import spoken
+from tltlc.automaton.memory_phrases import Speaker, spoken
 from tltlc.automaton.text import label_text
+from tltlc.core.names import ComparisonName
 from tltlc.logic import formula as f
 from tltlc.logic.text.phrases import with_opposites
 from tltlc.logic.text.printer import words_text
 from tltlc.monitor.failure import Cause, Failure
+from tltlc.resolve.spec import Atom
 
+_SIGN: Final = re.compile("[!&|]|->")
+"""A sign of an operator in the name of an atom."""
 _LONGEST: Final = 300
 """A line shows at most this many characters of what remains to be satisfied."""
 
@@ -38,11 +43,10 @@ def cause_words(fspa: Fspa, cause: Cause) -> str:
     false: list[str] = []
     for atom, polarity in cause.prime:
         if not polarity:
-            opposite = fspa.atoms[atom].opposite
-            if opposite is None:
+            if fspa.atoms[atom].opposite is None:
                 false.append(atom_words(fspa, atom))
             else:
-                true.append(opposite)
+                true.append(atom_words(fspa, atom, holds=False))
     if not false:
         return _listed(true, "and") if true else "this step comes too late"
     if not true:
@@ -57,6 +61,20 @@ def atom_words(fspa: Fspa, atom: int, *, holds: bool = True) -> str:
     """
     literal = f.atom(fspa.atoms[atom].name)
     return words_text(with_opposites(spoken(literal if holds else f.not_(literal), fspa)))
+
+
+def atom_titles(fspa: Fspa) -> tuple[str, ...]:
+    """Return a short title of each atom: its name, with words where a condition in the name has signs such as `!`."""
+    speaker = Speaker(fspa)
+    return tuple(_title(item, speaker) for item in fspa.atoms)
+
+
+def _title(item: Atom, speaker: Speaker) -> str:
+    if _SIGN.search(item.name) is None:
+        return item.name
+    if isinstance(item.base, ComparisonName):
+        return speaker.quantity_text(item.name)
+    return words_text(with_opposites(speaker.spoken(f.atom(item.name))))
 
 
 def unmet_words(fspa: Fspa, failed: Failure) -> str:

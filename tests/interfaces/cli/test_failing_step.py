@@ -84,7 +84,17 @@ signal pulse: int in [0, 9]
             "keep mode is emergency or previously (mode is not emergency)",
             "mode is normal, mode was emergency at the step before",
         ),
-        ("keep historically (mode is emergency)", "not (mode is emergency all along)"),
+        ("keep historically (mode is emergency)", "mode is not emergency now or before"),
+        ("keep mode is emergency or once (tempo > 7)", "mode is normal, tempo <= 7 all along"),
+        ("keep historically not mode is normal", "mode is normal now or before"),
+        ("keep (mode is emergency since tempo < 2)", "mode is not emergency since tempo < 2 or no tempo < 2 so far"),
+        ("keep mode is emergency or previously (tempo > 4)", "mode is normal, tempo <= 4 at the step before"),
+        (
+            "keep mode is emergency or once within 2 steps (tempo > 7)",
+            "mode is normal, tempo > 7 in the last 2 steps is false",
+        ),
+        ("keep historically for 2 steps not mode is normal", "a step with mode is normal in the last 2 steps"),
+        ("keep times(not mode is emergency) < 1", "times(mode is not emergency) is 1"),
         ("avoid once (tempo > 4)", "tempo > 4 now or before"),
         ("avoid tempo >= pulse and tempo <= pulse", "pulse is 5, tempo is 5"),
         ("avoid tempo == pulse and mode is normal", "pulse is 5, tempo is 5, mode is normal"),
@@ -95,6 +105,46 @@ def test_values_are_told_once_and_those_of_enums_by_name(tltlc, clause: str, val
     Path("modes.csv").write_text("mode,tempo,pulse\nemergency,1,2\nnormal,5,5\n")
     _, told, *_ = tltlc("monitor", "modes.tltl", "modes.csv").err.splitlines()
     assert told == f"at step 2: {values}"
+
+
+PADS = """\
+clock 10 Hz
+signal connected: bool
+signal hook: (attached, flying, idle)
+"""
+
+
+@pytest.mark.parametrize(
+    ("clause", "values", "broken"),
+    [
+        (
+            "keep time_holding(not connected and not hook is attached) < 0.2 s",
+            "time_holding(not connected and hook is not attached) is 0.2 s",
+            "(not connected and hook is not attached) for at least 0.2 s",
+        ),
+        (
+            "keep time_holding(not connected, 9 s) < time_holding(hook is idle, 9 s) + 0.2 s",
+            "time_holding(not connected) is 0.2 s, time_holding(hook is idle) is 0 s",
+            "time_holding(hook is idle, 9) + 0.2 <= time_holding(not connected, 9)",
+        ),
+        ("keep not (not connected since hook is idle)", "not connected since hook is idle", None),
+        ("keep connected since hook is idle", "connected since hook is idle is false", None),
+        (
+            "keep hook is idle or connected or (not connected since hook is attached)",
+            "hook is flying, connected is false, connected since hook is attached or no hook is attached so far",
+            None,
+        ),
+        ("keep connected or previously connected", "connected is false, connected at the step before is false", None),
+    ],
+)
+def test_conditions_in_values_are_in_words(tltlc, clause: str, values: str, broken: str | None) -> None:  # type: ignore[no-untyped-def]
+    Path("pads.tltl").write_text(f"{PADS}spec pads {{ {clause} }}\n")
+    Path("pads.csv").write_text("connected,hook\n1,idle\n0,flying\n0,flying\n0,flying\n0,flying\n")
+    lines = tltlc("monitor", "pads.tltl", "pads.csv", "--table").out.splitlines()
+    assert lines[-3].partition(": ")[2] == values
+    if broken is not None:
+        assert lines[-1].partition(" of 5: ")[2] == f"`{broken}`, clause 1"
+    assert not any("!" in line or "&" in line for line in lines)
 
 
 def test_a_table_says_yes_and_no_of_the_values_of_enums_and_of_what_is_remembered_of_them(tltlc) -> None:  # type: ignore[no-untyped-def]

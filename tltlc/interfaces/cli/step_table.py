@@ -7,7 +7,7 @@ from typing import Final
 
 from tltlc.automaton.fspa import Fspa
 from tltlc.automaton.text import label_text
-from tltlc.monitor.failure_words import shortened
+from tltlc.monitor.failure_words import atom_titles, shortened
 from tltlc.monitor.run import RunStep
 from tltlc.tools.judge.measures import short_number
 from tltlc.tools.judge.step_values import atom_value, truths
@@ -26,6 +26,7 @@ class StepTable:
 
     def __init__(self, fspa: Fspa, width: int) -> None:
         self._fspa, self._width, self._truths = fspa, width, truths(fspa)
+        self._names = atom_titles(fspa)
         self._to_do = label_text(fspa, 0)
         self._choose(())
 
@@ -36,10 +37,10 @@ class StepTable:
         used = sum(wide + 2 for _, wide in self._titles)
         self._atoms: list[int] = []
         for index in dict.fromkeys((*first, *range(len(self._fspa.atoms)))):
-            name = self._fspa.atoms[index].name
-            wide = max(len(name), 3 if index in self._truths else _NUMBER)
+            title = self._names[index]
+            wide = max(len(title), 3 if index in self._truths else _NUMBER)
             if used + wide <= self._width or (first and not self._atoms):
-                self._titles.append((name, wide))
+                self._titles.append((title, wide))
                 self._atoms.append(index)
                 used += wide + 2
         self.left_out = len(self._fspa.atoms) - len(self._atoms)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from typing import Any, Final
+from typing import Any
 
 from tltlc.automaton.memory import schedule
 from tltlc.automaton.memory_phrases import Speaker
@@ -20,10 +20,7 @@ from tltlc.tools.judge.clauses import Clauses
 from tltlc.tools.judge.kept_samples import KeptSamples
 from tltlc.tools.judge.measures import measure, short_number
 from tltlc.tools.judge.step_times import StepTimes, seconds_text
-from tltlc.tools.judge.step_values import StepValue, enum_of, signal_value
-
-_MEMORY: Final = ("once", "historically", "since", "previously", "last")
-"""The kinds of the registers that remember how a formula held."""
+from tltlc.tools.judge.step_values import StepValue, enum_of, register_value, signal_value
 
 
 @record
@@ -46,6 +43,7 @@ class FailingStep:
         self._times = StepTimes(monitor.fspa)
         self._kept = KeptSamples(monitor.fspa.signals, clock_varies=monitor.fspa.clock_varies)
         self._sample: TraceSample = {}
+        self._number = 0
         self._values: tuple[float, ...] = ()
         self._known: dict[str, float] = {}
 
@@ -61,7 +59,7 @@ class FailingStep:
         for row in rows:
             if row.step.failed_step == row.number:
                 names = (register.name for register in self._monitor.fspa.registers)
-                self._values = row.values
+                self._number, self._values = row.number, row.values
                 self._known = {**self._sample, **dict(zip(names, self._monitor.registers, strict=True))}
             yield row
 
@@ -130,28 +128,31 @@ class FailingStep:
         measured = measure(fspa, atom, self._known)
         if measured is not None and measured.number is not None:
             return (StepValue(measured.quantity, measured.number),)
-        if AtomValue(fspa.atoms[atom].name) in Flags(fspa, schedule(fspa)):
-            return (StepValue(atom_words(fspa, atom), "true" if value > 0.0 else "false"),)
+        speaker, name = Speaker(fspa), fspa.atoms[atom].name
+        if speaker.is_about_past(name):
+            fact = speaker.fact(name, holds=value > 0.0, is_first=self._number == 1)
+            return (StepValue(atom_words(fspa, atom), _truth(value)) if fact is None else StepValue(fact),)
+        if AtomValue(name) in Flags(fspa, schedule(fspa)):
+            return (StepValue(atom_words(fspa, atom), _truth(value)),)
         registers = {register.name: register for register in fspa.registers}
         read = fspa.atoms[atom].expression
-        if isinstance(read, SignalValue) and read.name in registers and registers[read.name].kind in _MEMORY:
-            return (StepValue(atom_words(fspa, atom, holds=value > 0.0)),)
-        speaker = Speaker(fspa)
         words = {
             name: value_words(register, speaker.event_text(register))
-            for name, register in registers.items()
             if register.kind in VALUES
+            else speaker.quantity_text(name)
+            for name, register in registers.items()
         }
-        signals = {signal.name: signal for signal in fspa.signals}
+        values = {signal.name: signal_value(signal, self._known[signal.name]) for signal in fspa.signals}
+        values |= {
+            name: register_value(register, self._known[name], fspa.clock_s) for name, register in registers.items()
+        }
         found = {node.name for node in nodes(read) if isinstance(node, SignalValue)}
         names = sorted(found, key=lambda name: (name in registers, name))
-        reads = tuple(
-            StepValue(
-                words.get(name, name),
-                signal_value(signals[name], self._known[name]) if name in signals else short_number(self._known[name]),
-            )
-            for name in names
-        )
+        reads = tuple(StepValue(words.get(name, name), values[name]) for name in names)
         if measured is not None or enum_of(fspa, atom) is not None:
             return reads
         return (StepValue(atom_words(fspa, atom), short_number(value), reads),)
+
+
+def _truth(value: float) -> str:
+    return "true" if value > 0.0 else "false"

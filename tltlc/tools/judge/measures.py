@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import Final
 
 from tltlc.automaton.fspa import Fspa
+from tltlc.automaton.memory_phrases import Speaker
 from tltlc.core.names import ComparisonName
 from tltlc.core.record import record
 from tltlc.expression.evaluate import evaluate
@@ -21,9 +22,9 @@ _MOST_DIGITS: Final = 17
 class Measure:
     """The sides of a comparison at a sample, in SI units.
 
-    ``quantity`` is the side that varies, as the atom names it, such as ``abs(spin)``; if both vary, the left
-    one. ``value`` is its value; None if both vary. ``gap`` is the difference between the two sides, at
-    least 0. ``unit`` is the unit of both, such as ``m/s``; empty for a plain number.
+    ``quantity`` is the side that varies, such as ``abs(spin)`` or ``times(not seen)``, with conditions in words;
+    if both vary, the left one. ``value`` is its value; None if both vary. ``gap`` is the difference between
+    the two sides, at least 0. ``unit`` is the unit of both, such as ``m/s``; empty for a plain number.
     """
 
     quantity: str
@@ -72,6 +73,7 @@ def measure(fspa: Fspa, atom: int, sample: Mapping[str, float]) -> Measure | Non
     except (ArithmeticError, KeyError, ValueError):
         return None
     unit = si_unit(_dimension(left, fspa) or _dimension(right, fspa) or PLAIN)
+    quantity = Speaker(fspa).quantity_text(quantity) if fspa.registers else quantity
     return Measure(quantity, None if _varies(right) else values[0], abs(values[0] - values[1]), str(unit or ""))
 
 

@@ -10,7 +10,7 @@ from tltlc.core.names import ComparisonName
 from tltlc.core.record import record
 from tltlc.expression.tree import AtomValue
 from tltlc.program.flags import Flags
-from tltlc.resolve.spec import Signal
+from tltlc.resolve.spec import Register, Signal
 from tltlc.tools.judge.measures import short_number
 
 
@@ -43,6 +43,16 @@ def signal_value(signal: Signal, value: float) -> str:
     if not signal.values or abs(value - nearest) >= 0.5:
         return short_number(value)
     return signal.values[min(max(nearest, 0), len(signal.values) - 1)]
+
+
+def register_value(register: Register, value: float, clock_s: float | None) -> str:
+    """Return the value of a register in words: a number with three digits, for a time with its unit.
+
+    ``clock_s`` is the length of a step; None if it is not known.
+    """
+    if register.unit == "steps" and clock_s is not None:
+        return f"{short_number(value * clock_s)} s"
+    return f"{short_number(value)} {register.unit if register.unit in ('s', 'steps') else ''}".rstrip()
 
 
 def enum_of(fspa: Fspa, atom: int) -> Signal | None:
