@@ -237,8 +237,18 @@ def test_a_search_without_a_result_does_not_say_that_the_spec_cannot_be_met() ->
     signals = " ".join(f"signal {name}: bool" for name in "abc")
     (fspa,) = compiler.compile_text(f"clock 60 Hz {signals} spec s {{ reach {chain} }}")
     said = text(explain(fspa))
-    assert "A way to succeed\n  None was found.\n" in said
+    assert "A way to succeed\n  None was found. The search tries only so many steps, so this" in said
     assert "What breaks it\n  Nothing breaks it for good.\n" in said
+
+
+def test_a_way_to_fail_is_found_where_something_must_come_several_times_first() -> None:
+    signals = " ".join(f"signal {name}: bool" for name in ("back", "in_menu", "title"))
+    clause = "keep times_within(back, 5 s) >= 3 and in_menu implies eventually within 1 s title"
+    (fspa,) = compiler.compile_text(f"clock 10 Hz {signals} spec s {{ {clause} }}")
+    fail = explain(fspa).fail
+    assert fail is not None
+    assert sum("not back" not in step.what and "back" in step.what for step in fail.steps) == 3
+    assert fail.steps[-1].what == "not title"
 
 
 @pytest.mark.parametrize("name", ["cover_and_hide", "navigation", "branching"])

@@ -24,6 +24,7 @@ _MOST_STATES = 8
 _MOST_STEPS = 60
 _MOST_GOALS = 3
 """The most goals of a chain in a sentence."""
+_NOT_FOUND = "None was found. The search tries only so many steps, so this does not mean that there is none."
 
 
 @record
@@ -209,12 +210,12 @@ def _trace_blocks(trace: ExampleTrace | None, otherwise: str) -> tuple[str | Sec
 
 
 def _no_success(explanation: Explanation) -> str:
-    return "There is none." if explanation.states[0].verdict == "violated" else "None was found."
+    return "There is none." if explanation.states[0].verdict == "violated" else _NOT_FOUND
 
 
 def _no_failure(explanation: Explanation) -> str:
     if explanation.failures:
-        return "None was found."
+        return _NOT_FOUND
     if explanation.states[0].verdict == "satisfied":
         return "There is none: every trace meets it."
     return "There is none: it fails only if it is not met when the episode is over."

@@ -58,20 +58,32 @@ class _Entry(NamedTuple):
 
 
 class GuidedSearch:
-    """Yields positions of ``search``, those nearest to the aim first."""
+    """Yields positions of ``search``, those nearest to the aim first.
 
-    def __init__(self, search: MemorySearch, aim: Aim) -> None:
-        self._search, self._aim = search, aim
+    Before the first sample, it is not known what is lacking. If a sample leaves everything as it was then, the
+    search goes on from there only if it ``tries_again``, once it has nothing else to try.
+    """
+
+    def __init__(self, search: MemorySearch, aim: Aim, *, tries_again: bool = False) -> None:
+        self._search, self._aim, self._tries_again = search, aim, tries_again
         self._heap: list[_Entry] = []
         self._numbers = count()
         self._visits: dict[Hashable, int] = {}
         self._seen: set[Hashable] = set()
+        self._blind: set[Hashable] = set()
+        self._again: dict[Hashable, tuple[Position, int, float, tuple[tuple[float, ...], ...] | None]] = {}
 
     def positions(self, starts: Iterable[Position]) -> Iterator[Position]:
         """Yield the ends of traces that go on from ``starts``, each one step after another or after a start."""
         for start in starts:
             self._visit(start, 0, 0.0, None)
-        while self._heap:
+        while self._heap or self._again:
+            if not self._heap:
+                again, self._again = self._again, {}
+                self._blind.clear()
+                for visit in again.values():
+                    self._visit(*visit)
+                continue
             entry = heappop(self._heap)
             done, lack = 0, 0.0
             for position, lack_then in islice(entry.steps, entry.turn):
@@ -91,8 +103,12 @@ class GuidedSearch:
         rank, visits = self._aim.rank(states), self._visits.get(key, 0)
         if rank is None or visits >= _MOST_VISITS or position.configuration in self._seen:
             return
+        if position.configuration in self._blind:
+            if values is not None and self._tries_again:
+                self._again.setdefault(position.configuration, (position, moves, lack, values))
+            return
         self._visits[key] = visits + 1
-        self._seen.add(position.configuration)
+        (self._blind if values is None else self._seen).add(position.configuration)
         moves += 1 + visits * _PER_VISIT
         for number in dict.fromkeys(self._aim.inputs(states, values)):
             self._push(rank, moves, lack, 1, self._held(position, number, moves))

@@ -99,7 +99,8 @@ class MemoryTraces:
         They go on from ``starts``, and from the first sample.
         """
         aim = EdgeAim(self._search, self._fspa, [atom.name for atom in self._fspa.atoms], wanted, self._inputs_for)
-        return islice(GuidedSearch(self._search, aim).positions((self._search.start(), *starts)), most)
+        search = GuidedSearch(self._search, aim, tries_again=True)
+        return islice(search.positions((self._search.start(), *starts)), most)
 
     def _inputs_for(self, literals: Literals) -> list[TraceSample]:
         return self._samples.samples(tuple((self._place[name], holds) for name, holds in literals.items()))
