@@ -191,10 +191,10 @@ def test_a_spec_without_time_is_shown_on_a_clock_that_varies() -> None:
     assert [row["accepting"] for row in rows] == [False, True]
 
 
-def test_a_long_list_of_failing_states_is_cut() -> None:
+def test_many_failing_states_are_counted() -> None:
     spec = view("signal a: bool\nsignal b: bool\nspec x = (G[0,20] !a) & F b")["spec"]
     assert len(spec["explanation"]["failures"][0]["states"]) > 20
-    assert spec["failures"] == ["a, in states 0, 1, 2, 4, 5, 6, 7, 8, …"]
+    assert spec["failures"] == ["a, in 41 of 44 states"]
 
 
 def test_the_picture_is_in_words_by_default() -> None:

@@ -251,6 +251,24 @@ def test_a_way_to_fail_is_found_where_something_must_come_several_times_first() 
     assert fail.steps[-1].what == "not title"
 
 
+def test_many_states_are_counted() -> None:
+    (fspa,) = compiler.compile_text("signal a: bool  signal b: bool  spec x = (G[0,20] !a) & F b")
+    assert "What breaks it\n  - a, in 41 of 44 states\n" in text(explain(fspa))
+
+
+def test_only_declared_groups_are_said_to_exclude_each_other() -> None:
+    signals = "signal hook: (attached, flying, idle)  signal a: bool  signal b: bool  exclusive a, b"
+    clauses = "avoid hook is attached and a  reach hook is flying and not b"
+    (fspa,) = compiler.compile_text(f"{signals} spec s {{ {clauses} }}")
+    explanation = explain(fspa)
+    assert set(map(frozenset, explanation.exclusive)) == {
+        frozenset(("hook is attached", "hook is flying")),
+        frozenset("ab"),
+    }
+    said = text(explanation)
+    assert "At most one of these holds at a time:\n    - a, b\n\n" in said
+
+
 @pytest.mark.parametrize("name", ["cover_and_hide", "navigation", "branching"])
 def test_explaining_takes_less_than_three_times_the_calls_of_compiling(name: str) -> None:
     source = read_source(ROOT / "examples" / f"{name}.tltl")

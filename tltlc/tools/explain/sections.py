@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from tltlc.backends.drawing.folding import distance_range
+from tltlc.core.names import ComparisonName, split_name
 from tltlc.core.record import record
 from tltlc.tools.explain.ending import limit_text
 from tltlc.tools.explain.explanation import ANYTHING, CountingRun, ExampleTrace, Explanation, TraceStep, TrapCondition
@@ -20,10 +21,11 @@ _MOST_LETTERS = 600
 """A table with a longer cell is left out."""
 _MOST_LEADS = 4
 _MOST_FAILURES = 12
-_MOST_STATES = 8
+_MOST_STATES = 3
 _MOST_STEPS = 60
 _MOST_GOALS = 3
 """The most goals of a chain in a sentence."""
+
 _NOT_FOUND = "None was found. The search tries only so many steps, so this does not mean that there is none."
 
 
@@ -87,11 +89,22 @@ def _requirements(explanation: Explanation) -> tuple[Section, ...]:
         ("Throughout:", outline.throughout),
         ("Again and again, for ever:", outline.recurring),
         ("And:" if lists or outline.throughout or outline.recurring else "Do this:", outline.others),
-        ("At most one of these holds at a time:", tuple(", ".join(group) for group in explanation.exclusive)),
+        ("At most one of these holds at a time:", tuple(", ".join(group) for group in _declared(explanation))),
     ):
         if items:
             lists.append(SectionList(title, items))
     return (Section("What it asks for", tuple(lists)),) if lists else ()
+
+
+def _declared(explanation: Explanation) -> tuple[tuple[str, ...], ...]:
+    """Return the groups of exclusive atoms without the values of one enum, of which everyone knows it."""
+    return tuple(group for group in explanation.exclusive if len(set(map(_tested_enum, group))) > 1)
+
+
+def _tested_enum(atom: str) -> str:
+    """Return the enum that an atom tests, such as ``mode`` for ``mode is alert``, and for other atoms the atom."""
+    name = split_name(atom)[0]
+    return name.left if isinstance(name, ComparisonName) and name.operator == "is" else atom
 
 
 def _memory(explanation: Explanation) -> tuple[Section, ...]:
@@ -108,23 +121,24 @@ def _failures(explanation: Explanation) -> tuple[str | SectionList, ...]:
 
 
 def failure_texts(explanation: Explanation) -> tuple[str, ...]:
-    """Describe each condition that breaks the spec for good: ``seen, in states 1, 2``.
+    """Describe each condition that breaks the spec for good: ``seen, in states 1, 2``, or ``seen, in 9 of 12 states``.
 
     If there are more than ``_MOST_FAILURES`` conditions, the last text says how many are left out.
     """
     ends_well = any(state.verdict == "satisfied" for state in explanation.states)
     step = "at any step before it is met for good" if ends_well else "at any step"
-    texts = [_failure_text(failure, step) for failure in explanation.failures[:_MOST_FAILURES]]
+    states = len(explanation.states)
+    texts = [_failure_text(failure, step, states) for failure in explanation.failures[:_MOST_FAILURES]]
     rest = len(explanation.failures) - len(texts)
     return (*texts, *([f"and {rest} more"] if rest else ()))
 
 
-def _failure_text(failure: TrapCondition, everywhere: str) -> str:
+def _failure_text(failure: TrapCondition, everywhere: str, states: int) -> str:
     if failure.everywhere:
         return f"{failure.when}, {everywhere}"
-    numbers = [str(state) for state in failure.states[:_MOST_STATES]]
-    ellipsis = ", …" if len(failure.states) > _MOST_STATES else ""
-    return f"{failure.when}, in state{'s' * (len(failure.states) > 1)} {', '.join(numbers)}{ellipsis}"
+    if len(failure.states) > _MOST_STATES:
+        return f"{failure.when}, in {len(failure.states)} of {states} states"
+    return f"{failure.when}, in state{'s' * (len(failure.states) > 1)} {', '.join(map(str, failure.states))}"
 
 
 def _states(explanation: Explanation) -> tuple[str | SectionTable, ...]:
