@@ -6,8 +6,20 @@ from collections.abc import Container, Iterator
 
 from tltlc.core.record import record
 from tltlc.grammar.module import Module
-from tltlc.grammar.tree import CallExpr, Declaration, Expr, GroupDecl, NameExpr, Quantified, SpecDecl
+from tltlc.grammar.tree import (
+    CallExpr,
+    Declaration,
+    Expr,
+    GroupDecl,
+    LetDecl,
+    NameExpr,
+    PredicateDecl,
+    Quantified,
+    SignalDecl,
+    SpecDecl,
+)
 from tltlc.grammar.walk import expressions, parts
+from tltlc.resolve.scope import Scope
 
 _FORMULAS = ("reach", "keep", "avoid", "require")
 
@@ -26,6 +38,28 @@ class MentionedNames:
 def mentioned_names(module: Module) -> frozenset[str]:
     """Return every name in the expressions of a module, as written there: ``near`` and ``s1`` for ``near(s1)``."""
     return frozenset(name for declaration in module.declarations for name in _in_declaration(declaration))
+
+
+def mentioned_signals(expression: Expr, scope: Scope) -> frozenset[str]:
+    """Return the names of the signals that an expression reads, also those in its lets and predicates.
+
+    ``hp`` for ``low``, after ``let low = hp < 20``. For a signal of entities, the name has no entity in it.
+    """
+    found: set[str] = set()
+    known: set[int] = set()
+    pending = [(expression, scope)]
+    while pending:
+        tree, visible = pending.pop()
+        for part in parts(tree):
+            binding = visible.names.get(part.name) if isinstance(part, (NameExpr, CallExpr)) else None
+            if binding is None or id(binding.declaration) in known:
+                continue
+            known.add(id(binding.declaration))
+            if isinstance(binding.declaration, SignalDecl):
+                found.add(binding.name)
+            elif isinstance(binding.declaration, (LetDecl, PredicateDecl)):
+                pending.append((binding.declaration.body, binding.scope))
+    return frozenset(found)
 
 
 def _in_declaration(declaration: Declaration) -> Iterator[str]:
