@@ -84,6 +84,60 @@ def test_the_help_names_both_readings_with_brackets(clause: str, wide: str, narr
     assert "TLT0446" not in codes(block(wide, narrow, before=BEFORE))
 
 
+@pytest.mark.parametrize(
+    ("clause", "until", "wide", "narrow"),
+    [
+        (
+            "keep c implies always not a until ends b",
+            "keep c implies not a until ends b",
+            "keep c implies always (not a until ends b)",
+            "keep c implies (always not a) until ends b",
+        ),
+        ("require always a until b", "require a until b", "require always (a until b)", "require (always a) until b"),
+        (
+            "keep c implies always (a) weak_until b",
+            "keep c implies a weak_until b",
+            "keep c implies always ((a) weak_until b)",
+            "keep c implies (always (a)) weak_until b",
+        ),
+        (
+            "keep c implies always (a and x > 3) until b",
+            "keep c implies (a and x > 3) until b",
+            "keep c implies always ((a and x > 3) until b)",
+            "keep c implies (always (a and x > 3)) until b",
+        ),
+        (
+            "keep c implies always a until b and x > 3",
+            "keep c implies (a until b) and x > 3",
+            "keep c implies always (a until b) and x > 3",
+            "keep c implies (always a) until b and x > 3",
+        ),
+    ],
+)
+def test_always_until_offers_until_first(clause: str, until: str, wide: str, narrow: str) -> None:
+    findings = (found.diagnostic for found in findings_in(block(clause, before=BEFORE)))
+    (finding,) = (found for found in findings if found.code == "TLT0446" and found.title.startswith("`always`"))
+    label, help_ = finding.labels[0], finding.help or ""
+    marked = label.source.slice(label.span)
+    assert help_.split("`")[2] == " if it must hold up to then, "
+    quoted = re.findall("`([^`]*)`", help_)
+    assert [clause.replace(marked, reading) for reading in quoted] == [until, wide, narrow]
+    texts = (clause, narrow, until)
+    typed, part, meant = (compile_text(block(text, before=BEFORE))[0] for text in texts)
+    assert compare(typed, part).relation == "equivalent"
+    assert compare(typed, meant).relation != "equivalent"
+    assert not any(
+        found.diagnostic.code == "TLT0446" and found.diagnostic.title.startswith("`always`")
+        for found in findings_in(block(until, before=BEFORE))
+    )
+
+
+@pytest.mark.parametrize("clause", ["keep always a until b", "avoid c and not (always a until b)"])
+def test_no_until_is_offered_where_it_begins_anew(clause: str) -> None:
+    assert len(readings(clause)) == 2
+    assert "TLT0446" not in codes(block(clause.replace("always a", "always (a)"), before=BEFORE))
+
+
 def test_once_and_since_may_mean_that_it_has_come_since_then() -> None:
     assert readings("keep c implies once a since b")[0] == "keep c implies (not b) since a"
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Container, Iterator, Sequence
 from itertools import takewhile
 from typing import Final
 
@@ -29,37 +29,70 @@ def check(view: FileView) -> Iterator[RuleFinding]:
     Also yield one for `until`, `weak_until` and `since` beside `and` and `or`, as in `a until b or c`.
     The words are `eventually` and `always` before `and`, `or`, `until`, `weak_until` and `since`; `next`, `once` and
     `historically` before the last three, and with a bound before `or`; `previously` before `or`. The letters F and G
-    are left out, and so are operands in brackets, which show how far the word applies; but not `(a and b)` before `or`.
+    are left out, and so are operands in brackets, which show how far the word applies; but not `(a and b)` before `or`,
+    nor `always (a)` before `until` and `weak_until`: in a sentence, "always a until b" is a until b.
     """
     for declaration in view.module.declarations:
         if isinstance(declaration, (LetDecl, SpecDecl)):
             for expression in walk.expressions(declaration):
+<<<<<<< HEAD
                 yield from _findings(expression, view.source)
+=======
+                # Of `avoid a until b and c`, another finding says that the first half has no effect.
+                if id(expression) not in avoided or not any(map(is_until, walk.operands(expression, "and"))):
+                    yield from _findings(expression, _anew(declaration, expression), view.source)
+>>>>>>> 8b37f736 (Offer `a until b` first for `always a until b` (TLT0446))
 
 
-def _findings(expression: Expr, source: SourceFile) -> Iterator[RuleFinding]:
+def _anew(declaration: LetDecl | SpecDecl, expression: Expr) -> set[int]:
+    """Return the ids of the parts of a clause that no `until` alone may replace.
+
+    These are all parts of an `avoid` clause, and the conjuncts of a `keep` clause, which begin anew at each step.
+    """
+    if isinstance(declaration, SpecDecl):
+        kinds = {clause.kind for clause in declaration.clauses if clause.value is expression}
+        if "avoid" in kinds:
+            return {id(part) for part in walk.parts(expression)}
+        if "keep" in kinds:
+            return {id(without_brackets(part)) for part in walk.conjuncts(expression)}
+    return set()
+
+
+def _findings(expression: Expr, anew: Container[int], source: SourceFile) -> Iterator[RuleFinding]:
+    """Yield the findings in an expression; ``anew`` has the ids of :func:`_anew`."""
     inner: set[int] = set()
+    chained: set[int] = set()
     for part in walk.parts(expression):
         if not isinstance(part, BinaryExpr) or part.op not in (*_CHAINS, *_ORDERED):
             continue
         operands = [part.left, part.right]
         if part.op in _CHAINS:
+            chained |= {*map(id, operands)}
             inner |= {id(link) for link in operands if isinstance(link, BinaryExpr) and link.op == part.op}
             operands = walk.operands(part, part.op) if id(part) not in inner else []
         for place, operand in enumerate(operands):
-            if isinstance(operand, Unary) and _is_narrow(operand, part.op, source):
+            is_lasting = _is_always_until(operand, part.op, source) and id(part) not in anew
+            if isinstance(operand, Unary) and (is_lasting or _is_narrow(operand, part.op, source)):
                 is_timed = operand.op == "F" and operand.bound is not None
                 is_beside = _is_in_time if is_timed else _is_about_one_step
                 following = [*takewhile(is_beside, operands[place + 1 :])]
                 if following:
                     is_past = operand.op in (*_PAST_WORDS, "previously")
-                    yield _finding(operand, part.op, following, source, one_reading=is_past and _has_future(part))
+                    one_reading = is_past and _has_future(part)
+                    until = _until_text(part, source, is_chained=id(part) in chained) if is_lasting else ""
+                    yield _finding(operand, part.op, following, source, one_reading=one_reading, until=until)
             if isinstance(operand, BinaryExpr) and source.slice(operand.op_span) in _INFIX_WORDS and operands[1:]:
                 before = [] if isinstance(operand.left, GroupExpr) else _states_before(operands[:place])
                 after = [] if isinstance(operand.right, GroupExpr) else operands[place + 1 :]
                 beside = before, [*takewhile(_is_about_one_step, after)]
                 if any(beside):
                     yield _infix_finding(operand, *beside, source)
+
+
+def _is_always_until(operand: Expr, op: str, source: SourceFile) -> bool:
+    """Whether an operand of ``op`` is `always a`, without a bound, before `until` or `weak_until`."""
+    is_always = isinstance(operand, Unary) and operand.bound is None and source.slice(operand.op_span) == "always"
+    return is_always and op in ("U", "W")
 
 
 def _is_narrow(operand: Unary, op: str, source: SourceFile) -> bool:
@@ -104,11 +137,12 @@ def _has_future(tree: Expr) -> bool:
 
 
 def _finding(
-    operator: Unary, op: str, following: Sequence[Expr], source: SourceFile, *, one_reading: bool
+    operator: Unary, op: str, following: Sequence[Expr], source: SourceFile, *, one_reading: bool, until: str
 ) -> RuleFinding:
     """Return the finding for an operator that ends before an infix operator ``op`` and its operands ``following``.
 
-    If ``one_reading``, the operator cannot apply to all of them.
+    If ``one_reading``, the operator cannot apply to all of them. ``until`` is the text without the operator, if this is
+    what people mean.
     """
     word, operand, end = source.slice(operator.op_span), operator.operand, following[-1].span.end
 
@@ -121,13 +155,23 @@ def _finding(
     label = Label(source, Span(operator.span.start, end), f"read as `{narrow}`")
     together = "both" if len(following) == 1 else "all of them"
     readings = f"`{wide}` if it applies to {together}, `{narrow}` if it does not"
-    help_ = f"write {readings}"
+    help_ = f"write `{until}` if it must hold up to then, {readings}" if until else f"write {readings}"
     if word == "once" and op == "since" and len(following) == 1:
         event, start = _in_brackets(first), _in_brackets(text(following[0].span.start, end))
         help_ = f"write `(not {start}) since {event}` if it must have come since the last `{start}`, {readings}"
     if one_reading:
         help_ = f"write `{narrow}` if you mean this; `{word}` cannot apply to what comes later"
     return RuleFinding(f"`{word}` applies to `{first}` alone", (label,), help_)
+
+
+def _until_text(part: BinaryExpr, source: SourceFile, *, is_chained: bool) -> str:
+    """Return `a until b` for `always a until b`, in brackets if it is an operand of `and` or `or`."""
+    assert isinstance(part.left, Unary)
+    lasting, inside = part.left.operand, without_brackets(part.left.operand)
+    if not isinstance(inside, (BinaryExpr, Quantified)):
+        lasting = inside
+    until = " ".join(f"{source.slice(lasting.span)} {source.text[part.left.span.end : part.span.end]}".split())
+    return f"({until})" if is_chained else until
 
 
 def _states_before(operands: Sequence[Expr]) -> list[Expr]:
