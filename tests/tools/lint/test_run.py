@@ -83,3 +83,8 @@ def test_supersedes_is_read_once_per_rule(monkeypatch: pytest.MonkeyPatch) -> No
     monkeypatch.setattr("tltlc.tools.lint.run.rules", lambda: (rule,))
     assert len(findings_in("".join(f"signal a{number}: bool\n" for number in range(100)))) == 100
     assert rule.reads == 1
+
+
+def test_what_nothing_uses_comes_last() -> None:
+    text = "signal unused: bool\nsignal a: bool\nsignal b: bool\nspec s {\n    limit 9 steps\n    avoid a until b\n}\n"
+    assert [finding.diagnostic.code for finding in lint(SourceFile("a.tltl", text))][-1] == "TLT0421"

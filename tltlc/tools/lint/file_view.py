@@ -13,7 +13,18 @@ from tltlc.core.record import record
 from tltlc.core.source import SourceFile, Span
 from tltlc.diagnostics.diagnostic import Diagnostic, Label
 from tltlc.grammar.module import Module
-from tltlc.grammar.tree import BinaryExpr, CallExpr, Clause, Expr, GroupExpr, NameExpr, Quantified, SpecDecl
+from tltlc.grammar.tree import (
+    BinaryExpr,
+    CallExpr,
+    Clause,
+    Expr,
+    GroupExpr,
+    IsExpr,
+    NameExpr,
+    Quantified,
+    SpecDecl,
+    Unary,
+)
 from tltlc.grammar.walk import children
 from tltlc.logic.formula import Formula
 from tltlc.logic.text.phrases import is_state
@@ -193,6 +204,23 @@ def operand_text(part: ScopedExpression) -> str:
     """
     tree = without_brackets(part.tree)
     return f"({part.text})" if isinstance(tree, (BinaryExpr, Quantified)) and not _is_comparison(tree) else part.text
+
+
+def negated_text(part: ScopedExpression) -> str:
+    """Return the text of the negation of an expression, as an operand of ``and``."""
+    tree = part.tree
+    if isinstance(tree, Unary) and tree.op == "not":
+        return operand_text(part.with_tree(tree.operand))
+    if isinstance(tree, IsExpr):
+        return f"{part.with_tree(tree.operand).text} is {'' if tree.negated else 'not '}{tree.value}"
+    return f"not {operand_text(part)}"
+
+
+def edited_text(part: ScopedExpression, place: Span, text: str) -> str:
+    """Return the text of an expression with another text in one place, on one line and without comments."""
+    source, whole = part.source.text, without_brackets(part.tree).span
+    lines = (source[whole.start : place.start] + text + source[place.end : whole.end]).splitlines()
+    return " ".join(word for line in lines for word in line.partition("//")[0].split())
 
 
 def _is_comparison(tree: Expr) -> bool:

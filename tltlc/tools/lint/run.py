@@ -15,6 +15,8 @@ from tltlc.tools.lint.file_view import FileView, SpecView
 from tltlc.tools.lint.rule import LintFinding, LintRule
 from tltlc.tools.lint.rules import rules
 
+_UNUSED: Final = "TLT0421"
+"""The code of the declarations that nothing uses."""
 _RANKS: Final = {"note": 0, "warning": 1, "error": 2}
 
 
@@ -39,7 +41,7 @@ def lint(
 
 
 def findings(view: FileView, levels: Mapping[str, str] = EMPTY) -> tuple[LintFinding, ...]:
-    """Return the findings of the compiler and of all rules, in the order of the text.
+    """Return the findings of the compiler and of all rules, in the order of the text; unused declarations come last.
 
     Findings that ``allow`` comments silence are left out, and so are those that ``levels`` silences
     (:func:`apply_levels`). Of the rest, less specific findings are left out if a more specific
@@ -123,7 +125,11 @@ def _is_superseded(diagnostic: Diagnostic, superseding: Iterable[Diagnostic]) ->
     )
 
 
-def _sort_key(finding: LintFinding, source: SourceFile) -> tuple[bool, int, str]:
-    """Return the sort key of a finding: findings outside ``source`` come first, then those in it by position."""
+def _sort_key(finding: LintFinding, source: SourceFile) -> tuple[int, int, str]:
+    """Return the sort key of a finding: outside ``source``, then in it by position, then what nothing uses.
+
+    A list of the unused declarations is long where rules share them, and says least about the rules.
+    """
     label = finding.diagnostic.labels[0] if finding.diagnostic.labels else None
-    return label is not None and label.source == source, label.span.start if label else 0, finding.diagnostic.code
+    place = (label is not None and label.source == source) + (finding.diagnostic.code == _UNUSED)
+    return place, label.span.start if label else 0, finding.diagnostic.code

@@ -13,7 +13,14 @@ BEFORE = f"clock 1 Hz\n{SIGNALS}"
 
 @pytest.mark.parametrize(
     "condition",
-    ["times(a) >= 2", "(times_since(a, b) > 1)", "times_within(a, 3 s) >= 2", "time_holding(a) >= 2 s"],
+    [
+        "times(a) >= 2",
+        "(times_since(a, b) > 1)",
+        "times_within(a, 3 s) >= 2",
+        "time_holding(a) >= 2 s",
+        "times_within(a, 3 s) >= 2 and b",
+        "b and time_holding(a) >= 2 s",
+    ],
 )
 def test_a_count_or_a_time_as_the_condition_of_a_later_answer_gets_a_finding(condition: str) -> None:
     text = block(f"keep {condition} implies eventually within 2 s c", before=BEFORE)
@@ -22,6 +29,13 @@ def test_a_count_or_a_time_as_the_condition_of_a_later_answer_gets_a_finding(con
     clause = re.findall("`([^`]*)`", finding.help or "")[0]
     once = block(clause, before=BEFORE)
     assert "TLT0463" not in codes(once)
+
+
+def test_an_answer_beside_an_excuse_gets_a_finding() -> None:
+    text = block("keep time_holding(a) >= 2 s implies b or (eventually within 2 s c)", before=BEFORE)
+    (finding,) = (item.diagnostic for item in findings_in(text) if item.diagnostic.code == "TLT0463")
+    offered = "keep begins (time_holding(a) >= 2 s) implies b or (eventually within 2 s c)"
+    assert f"write `{offered}`" in (finding.help or "")
 
 
 def test_the_help_asks_once() -> None:

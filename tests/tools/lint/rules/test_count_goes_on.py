@@ -15,6 +15,7 @@ BEFORE = f"clock 1 Hz\n{SIGNALS}signal mode: (idle, alert)\n"
         ("times_since(a, begins b) <= 1", "b"),
         ("times_since(a, begins mode is alert) < 2", "mode is alert"),
         ("total_time_since(a, begins (b and c)) <= 2 s", "(b and c)"),
+        ("times_since(a, ends b) <= 1", "not b"),
     ],
 )
 def test_a_limit_since_a_beginning_gets_a_note(rule: str, state: str) -> None:

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 
 from tests.fuzzing import times
-from tests.tools.lint.helpers import SIGNALS, codes, spec_and_findings
+from tests.tools.lint.helpers import SIGNALS, accepted_traces, codes, findings_in, spec_and_findings
 from tests.tools.lint.strategies import FREE, World, specs
 from tltlc.automaton.compare import are_equivalent
 from tltlc.pipeline import compile_text
@@ -70,3 +70,16 @@ def test_the_simplified_clause_is_equivalent(drawn: tuple[World, str]) -> None:
         goal = finding.labels[0].message.split("`")[1].removeprefix("reach ").removeprefix("avoid ")
         same, _ = spec_and_findings(idle_until.check, f"{text[: span.start]}({goal}){text[span.end :]}")
         assert world.traces.satisfying(spec.spec.formula) == world.traces.satisfying(same.spec.formula)
+
+
+def test_an_until_beside_and_forbids_its_end() -> None:
+    (finding,) = (
+        item.diagnostic for item in findings_in(spec("avoid a until b and c")) if item.diagnostic.code == "TLT0433"
+    )
+    assert finding.title == "this forbids the end of its `until`"
+    assert finding.help == "write `require (not a) weak_until (b and c)`"
+    assert "TLT0446" not in codes(spec("avoid a until b and c"))
+    typed, forbidden = (
+        accepted_traces(spec(clause), "abc", 3) for clause in ("avoid a until b and c", "avoid b and c")
+    )
+    assert typed < forbidden

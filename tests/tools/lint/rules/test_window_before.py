@@ -191,7 +191,6 @@ def test_the_offered_condition_counts_what_begins_in_the_state() -> None:
         "keep a implies x >= highest_within(x, 3 s) - 5 or b",
         "keep a implies weak_next x >= highest_within(x, 3 s) - 5",
         "keep a implies (b implies x >= highest_within(x, 3 s) - 5)",
-        "keep a implies times_within(b, 3 s) >= 2",
         "keep a implies times_within(b, 3 s) <= 0",
         "keep a implies times_within(a and b, 3 s) <= 2",
         "keep a implies times_within(b, 3 s, 5) + times_within(c, 3 s, 5) <= 2",
@@ -207,3 +206,27 @@ def test_the_offered_condition_counts_what_begins_in_the_state() -> None:
 )
 def test_other_rules_get_none(clause: str) -> None:
     assert CODE not in codes(block(clause, before=BEFORE))
+
+
+@pytest.mark.parametrize(
+    ("clause", "offered"),
+    [
+        ("keep a implies times_within(b, 3 s) >= 2", "keep time_holding(a) >= 3 s implies times_within(b, 3 s) >= 2"),
+        (
+            "keep mode is run implies total_time_within(b, 3 s) >= 1 s",
+            "keep time_holding(mode is run) >= 3 s implies total_time_within(b, 3 s) >= 1 s",
+        ),
+    ],
+)
+def test_a_least_count_that_the_start_of_a_condition_misses_gets_a_note(clause: str, offered: str) -> None:
+    assert f"write `{offered}`" in (note_on(clause).help or "")
+
+
+@given(SAMPLES)
+def test_a_least_count_is_asked_for_once_the_condition_has_lasted_that_time(samples: list[Sample]) -> None:
+    monitor, is_kept = Monitor(offered_for("times_within(b, 3 s) >= 1")), True
+    begins = [b and not (step and samples[step - 1][1]) for step, (_, b, _) in enumerate(samples)]
+    for step, (a, b, _) in enumerate(samples):
+        has_lasted = step >= 3 and all(a for a, _, _ in samples[step - 3 : step + 1])
+        is_kept = is_kept and (not has_lasted or any(begins[step - 3 : step + 1]))
+        assert monitor.step({"a": a, "b": b}).accepting == is_kept

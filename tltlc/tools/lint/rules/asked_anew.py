@@ -6,9 +6,10 @@ from collections.abc import Iterator
 from typing import Final
 
 from tltlc.diagnostics.diagnostic import Label
-from tltlc.grammar.tree import BinaryExpr, CallExpr, Unary
+from tltlc.grammar.tree import BinaryExpr, CallExpr, Expr, Unary
+from tltlc.grammar.walk import operands
 from tltlc.tools.lint.asked_results import AskedResult, asked_results
-from tltlc.tools.lint.file_view import FileView, without_brackets
+from tltlc.tools.lint.file_view import FileView, ScopedExpression, without_brackets
 from tltlc.tools.lint.rule import LintRule, RuleFinding
 
 _LASTING: Final = (
@@ -24,7 +25,10 @@ _LASTING: Final = (
 
 
 def check(view: FileView) -> Iterator[RuleFinding]:
-    """Yield a finding for each rule whose only condition is a count or a time, and whose answer may come later."""
+    """Yield a finding for each rule with a count or a time as its condition, whose answer may come later.
+
+    The condition may also ask for states: ``times(a) >= 3 and c implies eventually b``.
+    """
     for spec in view.specs:
         for clause, value in spec.clauses("keep", "require"):
             for asked in asked_results(clause, value):
@@ -36,33 +40,50 @@ def check(view: FileView) -> Iterator[RuleFinding]:
 
 def _may_wait(asked: AskedResult) -> bool:
     """Whether an answer may come later, and does not end the condition as `eventually not p` ends `time_holding(p)`."""
-    answer, condition = asked.part.tree, asked.condition.tree
-    if asked.steps or not isinstance(answer, Unary) or answer.op != "F" or not isinstance(condition, BinaryExpr):
+    answer = _later_part(asked.part)
+    if asked.steps or answer is None:
         return False
-    goal, counted = without_brackets(answer.operand), without_brackets(condition.left)
+    goal = without_brackets(answer.operand)
     if isinstance(goal, Unary) and goal.op == "G":
         return False
-    if not isinstance(counted, CallExpr) or not counted.arguments:
-        return False
+    return all(_goes_on(asked, goal, counted) for counted in _counts(asked))
+
+
+def _goes_on(asked: AskedResult, goal: Expr, counted: CallExpr) -> bool:
+    """Whether a goal does not end a count."""
     ends = asked.condition.with_tree(without_brackets(counted.arguments[-1].value)).text
     texts = (f"not {ends}", f"not ({ends})") if counted.name == "time_holding" else (ends, f"begins {ends}")
     return asked.part.with_tree(goal).text not in texts
 
 
 def _lasts(asked: AskedResult, view: FileView) -> bool:
-    """Whether the condition is that a count or a time has come to a number."""
-    condition = asked.condition.tree
-    if not isinstance(condition, BinaryExpr) or condition.op not in (">", ">=", "=="):
+    """Whether the condition is that a count or a time has come to a number, perhaps beside states."""
+    parts = [without_brackets(part) for part in operands(without_brackets(asked.condition.tree), "and")]
+    if any(isinstance(part, Unary) and part.op in ("begins", "ends") for part in parts):
         return False
-    counted = without_brackets(condition.left)
-    return isinstance(counted, CallExpr) and counted.name in _LASTING and counted.name not in view.env.scope.names
+    counts = _counts(asked)
+    return bool(counts) and all(call.name not in view.env.scope.names for call in counts)
+
+
+def _counts(asked: AskedResult) -> list[CallExpr]:
+    """Return the counts and times that the condition compares with a number that they have come to."""
+    compared = [without_brackets(part) for part in operands(without_brackets(asked.condition.tree), "and")]
+    signs = (">", ">=", "==")
+    left = [without_brackets(p.left) for p in compared if isinstance(p, BinaryExpr) and p.op in signs]
+    return [call for call in left if isinstance(call, CallExpr) and call.name in _LASTING and call.arguments]
+
+
+def _later_part(asked: ScopedExpression) -> Unary | None:
+    """Return what may come later: `eventually b`, alone or beside a state as in `c or (eventually b)`."""
+    parts = (without_brackets(part) for part in operands(without_brackets(asked.tree), "or"))
+    return next((part for part in parts if isinstance(part, Unary) and part.op == "F"), None)
 
 
 def _finding(asked: AskedResult, keyword: str) -> RuleFinding:
     """Return the finding for a rule; ``keyword`` is that of its clause, if the rule is all of it."""
-    condition, answer = asked.condition.text, asked.part
-    assert isinstance(answer.tree, Unary)
-    goal = answer.with_tree(without_brackets(answer.tree.operand)).text
+    condition, answer, later = asked.condition.text, asked.part, _later_part(asked.part)
+    assert later is not None
+    goal = answer.with_tree(without_brackets(later.operand)).text
     label = Label(asked.condition.source, asked.condition.tree.span, f"at each step with this, `{goal}` must come anew")
     help_ = (
         f"if once is enough, write `{keyword}begins ({condition}) implies {answer.text}`; if each step asks for it, "

@@ -8,7 +8,7 @@ from typing import Final
 from tltlc.diagnostics.diagnostic import Label
 from tltlc.grammar.tree import BinaryExpr, CallExpr, Expr, NameExpr, Unary
 from tltlc.grammar.walk import parts
-from tltlc.tools.lint.file_view import FileView, ScopedExpression, operand_text, without_brackets
+from tltlc.tools.lint.file_view import FileView, ScopedExpression, negated_text, operand_text, without_brackets
 from tltlc.tools.lint.rule import LintRule, RuleFinding
 from tltlc.tools.lint.stretches import every_step
 
@@ -33,17 +33,20 @@ def check(view: FileView) -> Iterator[RuleFinding]:
 
 def _findings(limit: ScopedExpression, call: CallExpr) -> Iterator[RuleFinding]:
     counted, start = (without_brackets(argument.value) for argument in call.arguments[:2])
-    if not isinstance(start, Unary) or start.op != "begins" or _names(start) & _names(counted):
+    if not isinstance(start, Unary) or start.op not in ("begins", "ends") or _names(start) & _names(counted):
         return
     state = limit.with_tree(without_brackets(start.operand))
-    label = Label(
-        limit.source, call.span, f"this goes on after `{state.text}` ends, and counts before its first beginning"
-    )
+    where, title = operand_text(state), f"this also counts where `{state.text}` does not hold"
+    goes_on = f"this goes on after `{state.text}` ends, and counts before its first beginning"
+    if start.op == "ends":
+        where, title = negated_text(state), f"this also counts where `{state.text}` holds"
+        goes_on = f"this goes on when `{state.text}` begins again, and counts before its first end"
     help_ = (
-        f"if only steps with `{state.text}` count, write `keep {operand_text(state)} implies {limit.text}`; "
-        "if all steps count, allow this with the comment `// tltlc: allow TLT0470`"
+        f"if only steps {'with' if start.op == 'begins' else 'without'} `{state.text}` count, write "
+        f"`keep {where} implies {limit.text}`; if all steps count, allow this with the comment "
+        "`// tltlc: allow TLT0470`"
     )
-    yield RuleFinding(f"this also counts where `{state.text}` does not hold", (label,), help_)
+    yield RuleFinding(title, (Label(limit.source, call.span, goes_on),), help_)
 
 
 def _names(tree: Expr) -> set[str]:

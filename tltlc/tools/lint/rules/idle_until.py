@@ -27,9 +27,11 @@ def check(view: FileView) -> Iterator[RuleFinding]:
             *earlier, last = operands(value.tree, "then")
             if not earlier:
                 yield from _among_alternatives(clause.kind, value)
+                if clause.kind == "avoid":
+                    yield from _among_conditions(value)
                 continue
             part = value.with_tree(without_brackets(last))
-            if _is_until(part.tree):
+            if is_until(part.tree):
                 previous = operand_text(value.with_tree(earlier[-1]))
                 label = Label(
                     value.source, part.tree.span, f"this means only `{value.with_tree(part.tree.right).text}`"
@@ -41,7 +43,7 @@ def check(view: FileView) -> Iterator[RuleFinding]:
 def _among_alternatives(kind: str, value: ScopedExpression) -> Iterator[RuleFinding]:
     """Yield a finding for the first `until` among the operands of `or`: ``avoid a or b until c`` means ``a or c``."""
     alternatives = [value.with_tree(without_brackets(part)) for part in operands(without_brackets(value.tree), "or")]
-    place = next((place for place, part in enumerate(alternatives) if _is_until(part.tree)), None)
+    place = next((place for place, part in enumerate(alternatives) if is_until(part.tree)), None)
     if place is None:
         return
     until = alternatives[place].tree
@@ -58,6 +60,18 @@ def _among_alternatives(kind: str, value: ScopedExpression) -> Iterator[RuleFind
     yield RuleFinding(_TITLE, (label,), help_)
 
 
+def _among_conditions(value: ScopedExpression) -> Iterator[RuleFinding]:
+    """Yield a finding for `avoid a until b and c`, which forbids each step with b and c."""
+    first, *others = [value.with_tree(part) for part in operands(without_brackets(value.tree), "and")]
+    if not others or not is_until(first.tree):
+        return
+    before, goal = first.with_tree(first.tree.left), first.with_tree(first.tree.right)
+    end = " and ".join(part.text for part in (goal, *others))
+    label = Label(value.source, value.tree.span, f"each step with `{end}` is forbidden")
+    help_ = f"write `require (not {operand_text(before)}) weak_until ({end})`"
+    yield RuleFinding("this forbids the end of its `until`", (label,), help_)
+
+
 def _joined(parts: Sequence[ScopedExpression]) -> str:
     """Return the text of a disjunction, in brackets if it has several parts."""
     if len(parts) == 1:
@@ -65,7 +79,8 @@ def _joined(parts: Sequence[ScopedExpression]) -> str:
     return f"({' or '.join(part.text for part in parts)})"
 
 
-def _is_until(tree: Expr) -> TypeGuard[BinaryExpr]:
+def is_until(tree: Expr) -> TypeGuard[BinaryExpr]:
+    """Whether an expression is `a until b`."""
     return isinstance(tree, BinaryExpr) and tree.op == "U"
 
 

@@ -12,6 +12,7 @@ from tltlc.grammar import walk
 from tltlc.grammar.tree import BinaryExpr, Constant, Expr, GroupExpr, LetDecl, Quantified, SpecDecl, Unary
 from tltlc.tools.lint.file_view import FileView, without_brackets
 from tltlc.tools.lint.rule import LintRule, RuleFinding
+from tltlc.tools.lint.rules.idle_until import is_until
 
 _CHAINS: Final = ("and", "or")
 _ORDERED: Final = ("U", "W", "since")
@@ -32,16 +33,13 @@ def check(view: FileView) -> Iterator[RuleFinding]:
     are left out, and so are operands in brackets, which show how far the word applies; but not `(a and b)` before `or`,
     nor `always (a)` before `until` and `weak_until`: in a sentence, "always a until b" is a until b.
     """
+    avoided = {id(value.tree) for spec in view.specs for _, value in spec.clauses("avoid")}
     for declaration in view.module.declarations:
         if isinstance(declaration, (LetDecl, SpecDecl)):
             for expression in walk.expressions(declaration):
-<<<<<<< HEAD
-                yield from _findings(expression, view.source)
-=======
                 # Of `avoid a until b and c`, another finding says that the first half has no effect.
                 if id(expression) not in avoided or not any(map(is_until, walk.operands(expression, "and"))):
                     yield from _findings(expression, _anew(declaration, expression), view.source)
->>>>>>> 8b37f736 (Offer `a until b` first for `always a until b` (TLT0446))
 
 
 def _anew(declaration: LetDecl | SpecDecl, expression: Expr) -> set[int]:

@@ -80,8 +80,8 @@ def _finding(goals: list[ScopedExpression], place: int, bound: TemporalInterval 
     meant = " then ".join([*texts[:place], timed, *texts[place + 1 :]])
     label = Label(source, bound.span, "from the goal just before it")
     help_ = (
-        f"if it counts from `{first.text}`, write `reach {meant}`; if it counts from `{before.text}`, "
-        "allow this with the comment `// tltlc: allow TLT0481`"
+        f"if it counts from where `{first.text}` begins, the last time if it begins again, write `reach {meant}`; "
+        f"if it counts from `{before.text}`, allow this with the comment `// tltlc: allow TLT0481`"
     )
     return RuleFinding(f"this time counts from `{before.text}`, not from `{first.text}`", (label,), help_)
 

@@ -6,10 +6,10 @@ from collections.abc import Iterator
 from typing import Final
 
 from tltlc.diagnostics.diagnostic import Label
-from tltlc.grammar.tree import BinaryExpr, CallExpr, Expr, IsExpr, Unary
+from tltlc.grammar.tree import BinaryExpr, CallExpr, Expr, Unary
 from tltlc.grammar.walk import children, parts
 from tltlc.resolve.scope import MEMORY_FUNCTIONS
-from tltlc.tools.lint.file_view import FileView, ScopedExpression, operand_text, without_brackets
+from tltlc.tools.lint.file_view import FileView, ScopedExpression, negated_text, operand_text, without_brackets
 from tltlc.tools.lint.rule import LintRule, RuleFinding
 from tltlc.tools.lint.stretches import every_step
 
@@ -56,22 +56,13 @@ def _finding(rule: ScopedExpression, call: CallExpr, event: Unary) -> RuleFindin
         steps, condition = f"with `{state.text}`", operand_text(state)
     else:
         title = f"this is also judged while `{state.text}`"
-        message = f"where `{state.text}` holds again, this is still from its last end"
-        steps, condition = f"without `{state.text}`", _negated(state)
+        message = f"where `{state.text}` holds again, this is from its last end; before that, from the first step"
+        steps, condition = f"without `{state.text}`", negated_text(state)
     help_ = (
         f"if only steps {steps} count, write `keep {condition} implies {rule.text}`; "
         "if all steps count, allow this with the comment `// tltlc: allow TLT0479`"
     )
     return RuleFinding(title, (Label(rule.source, call.span, message),), help_)
-
-
-def _negated(state: ScopedExpression) -> str:
-    tree = state.tree
-    if isinstance(tree, Unary) and tree.op == "not":
-        return operand_text(state.with_tree(tree.operand))
-    if isinstance(tree, IsExpr):
-        return f"{state.with_tree(tree.operand).text} is {'' if tree.negated else 'not '}{tree.value}"
-    return f"not {operand_text(state)}"
 
 
 RULE = LintRule("TLT0479", "note", check)

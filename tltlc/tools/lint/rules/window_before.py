@@ -5,13 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Final
 
-from tltlc.core.source import Span
 from tltlc.diagnostics.diagnostic import Label
 from tltlc.grammar.tree import BinaryExpr, CallExpr, Clause, Expr, IsExpr, NameExpr, NumberExpr, Unary
 from tltlc.grammar.walk import children, conjuncts, parts
 from tltlc.resolve.scope import MEMORY_FUNCTIONS
 from tltlc.tools.lint.asked_results import AskedResult, asked_results
-from tltlc.tools.lint.file_view import FileView, ScopedExpression, SpecView, operand_text, without_brackets
+from tltlc.tools.lint.file_view import FileView, ScopedExpression, SpecView, edited_text, operand_text, without_brackets
 from tltlc.tools.lint.names import mentioned_signals
 from tltlc.tools.lint.rule import LintRule, RuleFinding
 from tltlc.tools.lint.rules.first_change import same_text
@@ -70,20 +69,43 @@ def _in_answer(asked: AskedResult, clause: Clause, value: ScopedExpression, spec
     if call is None or not _is_lasting(condition) or _reads_the_same(call, condition, limit):
         return
     is_least = _is_least(limit.tree, call)
+    if is_least and call.name in _COUNTS and _is_all_asked(asked, value):
+        yield _too_early(call, condition, limit, clause, value, spec)
     if is_least != (call.name == "lowest_within") or not _is_about(limit, call):
         return
     number, _, *maximum = (limit.with_tree(argument.value).text for argument in call.arguments)
     since = f"{_SINCE[call.name]}({', '.join((number, f'begins {operand_text(condition)}', *maximum))})"
-    offered = " or ".join(_edited(limit, call.span, text) for text in (limit.with_tree(call).text, since))
+    offered = " or ".join(edited_text(limit, call.span, text) for text in (limit.with_tree(call).text, since))
     if not _is_all_asked(asked, value):
         offered = f"({offered})"
     keyword = f"{clause.kind} " if spec.declaration.block else ""
     help_ = (
         f"if only steps since `{condition.text}` began count, write "
-        f"`{keyword}{_edited(value, limit.tree.span, offered)}`; if the time before it counts, too, allow this with "
-        "the comment `// tltlc: allow TLT0478`"
+        f"`{keyword}{edited_text(value, limit.tree.span, offered)}`; if the time before it counts, too, allow this "
+        "with the comment `// tltlc: allow TLT0478`"
     )
     yield _finding(limit.with_tree(call), condition.text, help_)
+
+
+def _too_early(
+    call: CallExpr,
+    condition: ScopedExpression,
+    limit: ScopedExpression,
+    clause: Clause,
+    value: ScopedExpression,
+    spec: SpecView,
+) -> RuleFinding:
+    """Return the finding for a least number in a time, of which the start of a condition falls short."""
+    length = limit.with_tree(call.arguments[1].value).text
+    keyword = f"{clause.kind} " if spec.declaration.block else ""
+    lasted = f"time_holding({condition.text}) >= {length}"
+    help_ = (
+        f"if it must be so once `{condition.text}` has lasted {length}, write "
+        f"`{keyword}{edited_text(value, condition.tree.span, lasted)}`; if what came before it counts, too, allow this "
+        "with the comment `// tltlc: allow TLT0478`"
+    )
+    label = Label(limit.source, call.span, f"at the start of `{condition.text}`, this is about the time before it")
+    return RuleFinding(f"the last {length} may begin before `{condition.text}`", (label,), help_)
 
 
 def _is_lasting(condition: ScopedExpression) -> bool:
@@ -150,8 +172,8 @@ def _in_condition(condition: ScopedExpression) -> Iterator[RuleFinding]:
     within = f"{call.name}({', '.join((both, *(other.text for other in others)))})"
     those = f"only those in `{state}` count" if call.name == "times_within" else f"only the time in `{state}` counts"
     help_ = (
-        f"if {those}, write `{_edited(condition, call.span, within)}`; if what was before it counts, too, allow this "
-        "with the comment `// tltlc: allow TLT0478`"
+        f"if {those}, write `{edited_text(condition, call.span, within)}`; if what was before it counts, too, allow "
+        "this with the comment `// tltlc: allow TLT0478`"
     )
     yield _finding(count.with_tree(call), state, help_)
 
@@ -217,13 +239,6 @@ def _reads_the_same(call: CallExpr, condition: ScopedExpression, of: ScopedExpre
     """Whether what a function speaks of reads a signal that a condition reads."""
     scope = of.env.scope
     return bool(mentioned_signals(call.arguments[0].value, scope) & mentioned_signals(condition.tree, scope))
-
-
-def _edited(part: ScopedExpression, place: Span, text: str) -> str:
-    """Return the text of an expression with another text in one place, on one line and without comments."""
-    source, whole = part.source.text, without_brackets(part.tree).span
-    lines = (source[whole.start : place.start] + text + source[place.end : whole.end]).splitlines()
-    return " ".join(word for line in lines for word in line.partition("//")[0].split())
 
 
 def _finding(call: ScopedExpression, state: str, help_: str) -> RuleFinding:
