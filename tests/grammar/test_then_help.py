@@ -43,7 +43,7 @@ def test_the_suggested_formula_begins_at_the_next_step(before: str, written: str
 @pytest.mark.parametrize(
     ("clause", "readings"),
     [
-        ("avoid begins a then within 5 steps begins b", ["(begins a) then within 5 steps begins b"]),
+        ("avoid begins a then within 5 steps begins b", ["(begins a) then within 5 steps (begins b)"]),
         ("avoid begins a then within 5 steps b", ["(begins a) then within 5 steps b"]),
         ("avoid a then within 5 steps begins b", ["a then within 5 steps (begins b)"]),
         (

@@ -83,7 +83,10 @@ def test_a_function_of_the_last_seconds_has_a_name(call: str, known: str) -> Non
 
 @pytest.mark.parametrize(
     ("call", "said"),
-    [("time_between(a, a)", "`avoid a then within 3 s a`"), ("gap(begins a, a)", "`time_since(begins a)`")],
+    [
+        ("time_between(a, a)", "`avoid (begins a) then within 3 s (begins a)`"),
+        ("gap(begins a, a)", "`time_since(begins a)`"),
+    ],
 )
 def test_the_time_between_two_events_is_no_function(call: str, said: str) -> None:
     error = first_error(f"{HEAD}spec s {{ keep {call} >= 3 s }}")

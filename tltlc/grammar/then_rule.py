@@ -166,6 +166,8 @@ def _readings_help(source: SourceFile, operand: Expr, neighbour: Expr, last: boo
     comes after ``then``. The text ``then`` is the operator, with its bound.
     """
     text, neighbour_text = _text(source, operand), _text(source, neighbour)
+    if isinstance(neighbour, tree.Unary) and neighbour.op in _PAST:
+        neighbour_text = f"({neighbour_text})"
     inner: Expr
     if isinstance(operand, tree.Unary):
         operator = source.slice(Span(operand.span.start, operand.operand.span.start)).strip()

@@ -15,7 +15,7 @@ from tltlc.core.source import Span
 from tltlc.diagnostics.diagnostic import Label
 from tltlc.expression.tree import Before, Condition, Const, Expression, Op, SignalValue, When, depth
 from tltlc.grammar.past_words import FUNCTIONS, MOST_STEPS_BACK, OF_EVENTS
-from tltlc.grammar.tree import BinaryExpr, CallExpr, Expr, GroupExpr, NumberExpr, Unary
+from tltlc.grammar.tree import BinaryExpr, CallExpr, Expr, GroupExpr, NameExpr, NumberExpr, Unary
 from tltlc.io.limits import ARITHMETIC
 from tltlc.logic import formula as logic
 from tltlc.logic.formula import Formula
@@ -124,16 +124,34 @@ def _window(expr: Unary, operand: Formula, env: Env) -> Formula:
     return _atom(name, value, expr.span, env)
 
 
+def _looking_back(expr: Expr, env: Env) -> str:
+    """Return a help for `a then b`: the same, said at the step of b; "" for other formulas."""
+    while isinstance(expr, GroupExpr):
+        expr = expr.inner
+    if not isinstance(expr, BinaryExpr) or expr.op != "then":
+        return ""
+    first, second = (
+        text if isinstance(side, (NameExpr, GroupExpr)) else f"({text})"
+        for side in (expr.left, expr.right)
+        for text in (env.scope.source.slice(side.span),)
+    )
+    if expr.bound is None:
+        return f"at the step of the second, it is `{second} and previously once {first}`"
+    time = env.scope.source.slice(expr.bound.high.span)
+    return f"at the step of the second, it is `{second} and once within {time} {first}`"
+
+
 def _check_operand(operand: Formula, expr: Expr, env: Env) -> None:
     """Check the operand of an operator or function of the past, before a name is made of its text."""
     if any(part.is_temporal for part in operand.walk()):
+        ended = _looking_back(expr, env)
         raise problem(
             "TLT0320",
             "a formula about the trace so far cannot contain an operator about the future",
             env.scope.source,
             expr.span,
             "this speaks of what is still to come",
-            advice="let operators such as `eventually` and `until` stand outside, as in `eventually once p`",
+            advice=ended or "let operators such as `eventually` and `until` stand outside, as in `eventually once p`",
         )
     letters: dict[Formula, int] = {}
     for part in operand.bottom_up():

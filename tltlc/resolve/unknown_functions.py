@@ -11,6 +11,7 @@ from tltlc.resolve.values import Env
 
 _CHANGES: Final = ("changed", "changes", "change", "has_changed", "did_change")
 _DIFFERENCES: Final = ("delta", "diff", "difference")
+_EDGES: Final = ("begins ", "ends ")
 _LIKE: Final = 0.6
 """How like a name must be to that of a function, from 0 to 1."""
 _AGGREGATES: Final = frozenset("mean average avg median sum integral std variance rms moving rolling".split())
@@ -61,10 +62,11 @@ def _apart_help(call: CallExpr, env: Env) -> str:
         return ""
     first, second = (env.scope.source.slice(call.arguments[at].value.span) for at in (0, count - 1))
     if first == second:
-        event = first if first.isidentifier() else f"({first})"
+        state = first if first.isidentifier() else f"({first})"
+        event = first if first.startswith(_EDGES) else f"begins {state}"
         return (
             f"no function is the time between two `{first}`: for more than 3 s between them, write "
-            f"`avoid {event} then within 3 s {event}`, and for less `keep time_holding(not {event}) < 3 s`"
+            f"`avoid ({event}) then within 3 s ({event})`, and for less `keep time_holding(not {state}) < 3 s`"
         )
     return (
         f"no function is the time between `{first}` and `{second}`: at `{second}`, `time_since({first})` is the time "

@@ -150,7 +150,9 @@ def _lasting_goal(part: Conjunct) -> str:
                 return (
                     f"write `{goal.operator} within {whole} time_holding(q) >= {' '.join(shorter)}` for "
                     f"`{goal.operator} within {' '.join(time)} {length.operator} for {' '.join(shorter)} q`, which "
-                    "needs few states: then q may have begun before it is asked for"
+                    "needs few states: then q may have begun before it is asked for. If each beginning of q must last, "
+                    f"write `keep p implies {goal.operator} within {' '.join(time)} q` and "
+                    f"`keep begins q implies {length.operator} for {' '.join(shorter)} q`"
                 )
     return ""
 
