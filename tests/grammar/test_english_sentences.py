@@ -42,7 +42,6 @@ NO_READING = (
 
 UNSAYABLE = {
     "fire only after at least 9 steps with spray": "steps in a row once",
-    "every third fire must be spray": "no clause can say what holds at each third `fire`",
     "at some point health is 30 higher than 70 s ago": "no clause can say what `health` was 70 s ago",
     "health never falls by more than 5 in 70 s": "no clause says by how much `health` changes in 70 s",
     "fire between 50 s and 80 s after spray": "a clause that looks 80 s ahead has too many states",

@@ -47,8 +47,8 @@ BRACKETINGS = {
         "keep alarm implies (hidden until seen) and eventually within 1 s seen",
     ],
     "keep alarm implies hidden within 1 s until seen": [
-        "keep alarm implies eventually within 1 s (hidden until seen)",
-        "keep alarm implies (eventually within 1 s hidden) until seen",
+        "keep alarm implies eventually within 1 s (hidden and (hidden weak_until seen))",
+        "keep alarm implies eventually within 1 s (hidden and (hidden until seen))",
     ],
     "keep alarm implies hidden within 1 s or seen": [
         "keep alarm implies eventually within 1 s (hidden or seen)",

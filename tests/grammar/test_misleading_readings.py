@@ -87,7 +87,8 @@ HELPS = {
     "when phase is menu coins resets to 0": "write `keep phase is menu implies coins == 0`",
     "lap never goes from 0 to 2": "write `avoid previously (lap == 0) and lap == 2`",
     "reach 3 times coins increases without fire": (
-        "write `reach times_since(coins > previous(coins), fire) >= 3` if `fire` must not come between them, "
+        "write `require not fire until times(coins > previous(coins)) >= 3` if `fire` must not come before the last "
+        "of them, or `reach times_since(coins > previous(coins), fire) >= 3` if `fire` must not come between them, "
         "or `reach times(coins > previous(coins)) >= 3` and `avoid fire` if `fire` must never come"
     ),
     "reach coins >= 10 twice": "write `reach times(coins >= 10) >= 2`",
@@ -163,9 +164,10 @@ HELPS = {
     # Numbers that come to a value, and parts of numbers.
     "when coins is reset to 0, spray": "write `keep begins coins == 0 implies spray`",
     "when lap becomes 3, spray": "write `keep begins lap == 3 implies spray`",
-    "health gets to 0 within 5 s": (
-        "write `require eventually within 5 s health >= 0` if `health` comes to it from below, "
-        "or `require eventually within 5 s health <= 0` if `health` comes to it from above"
+    "health gets to 0 within 5 s": "write `require eventually within 5 s health <= 0`",
+    "health gets to 50 within 5 s": (
+        "write `require eventually within 5 s health >= 50` if `health` comes to it from below, "
+        "or `require eventually within 5 s health <= 50` if `health` comes to it from above"
     ),
     "keep health / twice lap <= 1": "write `keep health / (2 * lap) <= 1`",
     # What is denied twice, and what holds at the end.

@@ -231,21 +231,33 @@ SEVERAL_READINGS = {
     ],
     "keep ends fire implies always for 0.5 s not fire unless spray or boss_dead": [
         (
-            "keep ends fire implies ((always for 0.5 s not fire) or (not fire until (spray or boss_dead)))",
-            "if `(spray or boss_dead)` ends that time",
+            "keep ends fire implies (always for 0.5 s not fire) or (not fire until (spray or boss_dead))",
+            "if `spray or boss_dead` ends that time",
         ),
         (
-            "keep ends fire implies ((spray or boss_dead) or (always for 0.5 s not fire))",
-            "if `(spray or boss_dead)` counts at the first step alone",
+            "keep ends fire implies spray or boss_dead or (always for 0.5 s not fire)",
+            "if `spray or boss_dead` counts only at the first step of that time",
+        ),
+        (
+            "keep ends fire implies always for 0.5 s (not fire or spray or boss_dead)",
+            "if it excuses the steps with `spray or boss_dead` alone",
         ),
     ],
     "when fire, spray for 3 s unless boss_dead": [
-        ("keep fire implies ((always for 3 s spray) or (spray until boss_dead))", "if `boss_dead` ends that time"),
-        ("keep fire implies (boss_dead or (always for 3 s spray))", "if `boss_dead` counts at the first step alone"),
+        ("keep fire implies (always for 3 s spray) or (spray until boss_dead)", "if `boss_dead` ends that time"),
+        (
+            "keep fire implies boss_dead or (always for 3 s spray)",
+            "if `boss_dead` counts only at the first step of that time",
+        ),
+        ("keep fire implies always for 3 s (spray or boss_dead)", "if it excuses the steps with `boss_dead` alone"),
     ],
     "spray for 3 s after fire unless boss_dead": [
-        ("keep fire implies ((always for 3 s spray) or (spray until boss_dead))", "if `boss_dead` ends that time"),
-        ("keep fire implies (boss_dead or (always for 3 s spray))", "if `boss_dead` counts at the first step alone"),
+        ("keep fire implies (always for 3 s spray) or (spray until boss_dead)", "if `boss_dead` ends that time"),
+        (
+            "keep fire implies boss_dead or (always for 3 s spray)",
+            "if `boss_dead` counts only at the first step of that time",
+        ),
+        ("keep fire implies always for 3 s (spray or boss_dead)", "if it excuses the steps with `boss_dead` alone"),
     ],
     "when fire, always spray unless boss_dead": [
         ("keep fire implies (spray weak_until boss_dead)", "if `boss_dead` ends it for good"),

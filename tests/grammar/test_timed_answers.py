@@ -194,7 +194,7 @@ SEVERAL_READINGS: Mapping[str, Sequence[tuple[str, ...]]] = {
         ),
         (
             "keep fire implies boss_dead or (next after 0.5 s eventually within 0.3 s spray)",
-            "if `boss_dead` counts at the step of the condition alone",
+            "if `boss_dead` counts only at the first step of that time",
         ),
     ],
     "2 s after ends fire, spray": [

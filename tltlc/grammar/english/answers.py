@@ -32,7 +32,9 @@ class Asked:
     ``is_formula`` says that the answer is a formula about later steps, which counts from the step of the condition,
     ``is_once`` that it cannot be asked for at two steps in a row, but only where the condition begins. ``settled``
     is what holds after a change that is asked for: a for `begins a`. ``denied`` is what must not hold for a time,
-    and ``until`` what is asked for until something else, which need not come.
+    and ``until`` what is asked for until something else, which need not come. ``operated`` has the operator and the
+    operand of a formula such as ``weak_next always for 1 s a``. ``is_timed`` says that a formula asks for something
+    within a time or for a time, and ``late`` is the time of an answer that is due too many steps later to look ahead.
     """
 
     answer: Answer
@@ -42,6 +44,15 @@ class Asked:
     settled: State | None = None
     denied: State | None = None
     until: tuple[State, State] | None = None
+    operated: tuple[str, State] | None = None
+    is_timed: bool = False
+    late: Duration | None = None
+
+
+def operated(operator: str, state: State, condition: str = "") -> Asked:
+    """Return an answer that is a formula of an operator and a condition."""
+    formula = State(f"{operator} {state.at(ATOM)}")
+    return Asked(Answer("now", formula), condition, is_formula=True, operated=(operator, state))
 
 
 class Answers(Conditions):
@@ -213,9 +224,6 @@ class Answers(Conditions):
         formula = State(f"eventually within {duration.text} always for {length.text} {state.at(ATOM)}")
         return Asked(Answer("now", formula), is_formula=True)
 
-    def within_unless(self, state: State, duration: Duration, event: Event) -> Asked | None:
-        return None if is_negative(state) else self.reach_in_time_unless(state, duration, event)
-
     def reach_in_time_unless(self, state: State, duration: Duration, event: Event) -> Asked | None:
         exception = as_state(event)
         if exception is None or state.level > OR:
@@ -269,7 +277,9 @@ class Answers(Conditions):
 
     def delayed(self, state: State, duration: Duration) -> Asked | None:
         # A monitor remembers each step with the condition until the answer is due.
-        return Asked(Answer("delayed", state, duration.text)) if self.steps(duration) <= MOST_STEPS else None
+        if self.steps(duration) <= MOST_STEPS:
+            return Asked(Answer("delayed", state, duration.text))
+        return None if duration.is_steps else Asked(Answer("delayed", state, duration.text), late=duration)
 
     def delayed_first(self, duration: Duration, state: State) -> Asked | None:
         return self.delayed(state, duration)
@@ -285,10 +295,10 @@ class Answers(Conditions):
         return Asked(Answer("always", state))
 
     def next(self, state: State) -> Asked:
-        return Asked(Answer("now", State(f"weak_next {state.at(ATOM)}")), is_formula=True)
+        return operated("weak_next", state)
 
     def next_forever(self, state: State) -> Asked:
-        return Asked(Answer("now", State(f"weak_next always {state.at(ATOM)}")), is_formula=True)
+        return operated("weak_next always", state)
 
     def never(self, state: State) -> Asked:
         return Asked(Answer("always", state.negated(), "", True))

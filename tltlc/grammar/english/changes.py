@@ -9,10 +9,20 @@ from typing import Final
 from tltlc.core.record import replace
 from tltlc.grammar.english.answers import Asked
 from tltlc.grammar.english.events import Event, Held, as_state
-from tltlc.grammar.english.quantities import Change, Duration, Number, begun, comparison
+from tltlc.grammar.english.quantities import (
+    MIRRORED,
+    Change,
+    Duration,
+    Number,
+    begun,
+    changed_value,
+    comparison,
+    share_of,
+)
 from tltlc.grammar.english.rules import LASTING, Reading, Rules, When, begun_text
 from tltlc.grammar.english.terminals import Term
 from tltlc.grammar.mistakes.declared_names import DeclaredNames
+from tltlc.grammar.mistakes.sentences.answers import Answer
 from tltlc.grammar.mistakes.sentences.changes import keeps_values
 from tltlc.grammar.mistakes.sentences.states import AND, ATOM, OR, State, joined
 
@@ -36,6 +46,34 @@ class Changes(Rules):
         state = self.changes(term, "stays") if change == "varies" else None
         return None if state is None else Reading((f"keep {state.text}",))
 
+    def change_of_number(self, term: Term) -> State | None:
+        """Return the condition of `the last change of x`."""
+        return self.changes(term, "varies")
+
+    def keep_change(self, term: Term, change: Change, sign: str, step: Number) -> _Found:
+        """Return the rule of `coins change by at most 3`, from each step to the next."""
+        state = self._limited_change(term, change, sign, step)
+        return None if state is None else Reading((f"keep {state.text}",))
+
+    def keep_change_below(self, term: Term, change: Change, sign: str, step: Number, *_: Duration) -> _Found:
+        return self.keep_change(term, change, {">": "<=", ">=": "<"}.get(sign, ""), step)
+
+    def change_limited(self, term: Term, change: Change, sign: str, step: Number) -> Asked | None:
+        """Return the answer of `health falls by at most 20`."""
+        state = self._limited_change(term, change, sign, step)
+        return None if state is None else Asked(Answer("now", state))
+
+    def _limited_change(self, term: Term, change: Change, sign: str, step: Number) -> State | None:
+        before = f"previous({term.text})"
+        if sign in ("<", "<=") and change == "varies":
+            share = share_of(term, step)
+            most = step.text if share is None else f"{share:g} * {before}"
+            return State(f"abs({term.text} - {before}) {sign} {most}")
+        if sign not in ("<", "<=") or change not in ("falls", "rises"):
+            return None
+        relation = MIRRORED[sign] if change == "falls" else sign
+        return State(f"{term.text} {relation} {changed_value(term, before, change, step)}")
+
     def cannot_stay(self, term: Term, sign: str, duration: Duration) -> _Found:
         before = f"previous({term.text})"
         state = State(f"{term.text} <= {before} and {term.text} >= {before}", AND)
@@ -48,6 +86,17 @@ class Changes(Rules):
     def no_number(self, term: Term) -> State | None:
         is_from_0 = term.declared is not None and term.declared.ends[:1] == ("0",)
         return comparison(Number(term.text, term), "==", Number("0")) if is_from_0 else None
+
+    def never_both_ways(
+        self, term: Term, first: Change, second: Change, sign: str, step: Number, *during: State
+    ) -> _Found:
+        """Return the rule of `lap never falls and never rises by more than 1`, perhaps with `while a`."""
+        kept = self.not_changing(term, first)
+        limited = self._limited_change(term, second, {">": "<=", ">=": "<"}.get(sign, ""), step)
+        if kept is None or limited is None or first == second:
+            return None
+        both = joined([kept, limited], "and")
+        return _compared_while(during[0], both) if during else Reading((f"keep {both.text}",))
 
     def only_changes(self, term: Term, change: Change) -> _Found:
         sign = {"rises": ">=", "falls": "<="}.get(change)
@@ -146,11 +195,7 @@ class Changes(Rules):
             return None
         if state.text.startswith(("begins ", "ends ")) or "previous" in state.text:
             return None  # a change has no steps within
-        within = joined([state, State(f"previously {state.at(ATOM)}")], "and")
-        return [
-            Reading((f"keep {within.at(OR)} implies {same.at(OR)}",), f"within each `{state.text}`"),
-            Reading((f"keep {state.at(OR)} implies {same.at(OR)}",), "also from the step before it begins"),
-        ]
+        return _compared_while(state, same)
 
     def last_in_value(self, answers: list[Asked], value: Term) -> _Found:
         """Return the readings of `tax is constant in spring`, where one enum has the value."""
@@ -339,3 +384,12 @@ def _only(found: _Found) -> Reading | None:
     """Return the reading of a rule that has one."""
     readings = found if isinstance(found, list) else [] if found is None else [found]
     return readings[0] if len(readings) == 1 and not readings[0].condition else None
+
+
+def _compared_while(state: State, compared: State) -> list[Reading]:
+    """Return the readings of a rule that compares a number with its value before while something holds."""
+    within = joined([state, State(f"previously {state.at(ATOM)}")], "and")
+    return [
+        Reading((f"keep {within.at(OR)} implies {compared.at(OR)}",), f"within each `{state.text}`"),
+        Reading((f"keep {state.at(OR)} implies {compared.at(OR)}",), "also from the step before it begins"),
+    ]

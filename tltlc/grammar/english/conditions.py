@@ -8,7 +8,7 @@ from typing import Final
 from tltlc.core.record import record
 from tltlc.grammar.english.changed_arguments import change_of_enum
 from tltlc.grammar.english.events import Counted, Crossing, Event, Held, as_state, joined_events
-from tltlc.grammar.english.quantities import Duration, Number, Quantities, comparison
+from tltlc.grammar.english.quantities import Duration, Number, Quantities, begun, comparison
 from tltlc.grammar.english.terminals import Term
 from tltlc.grammar.mistakes.declared_names import DeclaredNames
 from tltlc.grammar.mistakes.sentences.states import ATOM, OR, RULE, State, joined
@@ -273,6 +273,11 @@ class Conditions(Quantities):
     def rises_above(self, number: Number, limit: Number) -> Crossing | None:
         return _crossing(comparison(number, ">", limit))
 
+    def was_compared(self, left: Number, sign: str | Term, right: Number) -> State | None:
+        """Return the condition of `x was >= 60` at the step before."""
+        state = self.compared(left, sign if isinstance(sign, str) else sign.text, right)
+        return None if state is None else State(f"previously ({state.text})")
+
     def comes_to(self, number: Number, limit: Number) -> Crossing | None:
         return _crossing(comparison(number, ">=", limit))
 
@@ -324,7 +329,7 @@ class Conditions(Quantities):
         None for one that always holds there: ever since that very step.
         """
         state, start = self._since.get(condition.text, (condition, None))
-        if start is not None and start.text == event.text:
+        if start is not None and begun(start).text == begun(event).text:
             own = joined([state, start.negated()], "and")  # what holds at the event itself came before it
             return State(f"previously (not {start.at(ATOM)} since {own.at(ATOM)})")
         return None if condition.text.endswith(f" since {event.at(ATOM)})") else condition

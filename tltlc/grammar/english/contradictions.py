@@ -7,12 +7,17 @@ one that asks for a and for not a at one step.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Final
 
 from tltlc.grammar.mistakes.sentences.validity import parsed_clause
 from tltlc.grammar.tree import BinaryExpr, CallExpr, Expr, GroupExpr, IsExpr, NameExpr, NumberExpr, Unary
 
 Literals = frozenset[tuple[str, bool]]
 """Conditions, as they are written, and whether they hold."""
+_POSITIVE: Final = {
+    "<": ("<", True), ">=": ("<", False), ">": (">", True), "<=": (">", False), "==": ("==", True), "!=": ("==", False),
+}  # fmt: skip
+"""Maps the signs of comparisons to one of the two that are opposites, and whether it is the same."""
 _NONE: Literals = frozenset()
 
 
@@ -51,6 +56,10 @@ def _at_this_step(expr: Expr, clause: str, *, holds: bool = True) -> Literals:
             return _at_this_step(expr.left, clause, holds=holds) | _at_this_step(expr.right, clause, holds=holds)
         if expr.op in (">", ">=") and holds and isinstance(expr.left, CallExpr) and expr.left.name == "time_holding":
             return _at_this_step(expr.left.arguments[0].value, clause)
+        if expr.op in _POSITIVE:
+            sign, is_positive = _POSITIVE[expr.op]
+            sides = (clause[side.span.start : side.span.end] for side in (expr.left, expr.right))
+            return frozenset({(f" {sign} ".join(sides), holds == is_positive)})
         if (expr.op, holds) == ("implies", False):
             return _at_this_step(expr.left, clause) | _at_this_step(expr.right, clause, holds=False)
     return _NONE
@@ -66,7 +75,13 @@ def _of_unary(expr: Unary, clause: str, *, holds: bool) -> Literals:
             return frozenset({(counted[0], True)})
         return _at_this_step(expr.operand, clause, holds=expr.op == "begins")
     is_from_now = expr.bound is None or expr.bound.low is None or expr.bound.low.value == 0.0
-    if is_from_now and (expr.op, holds) in (("G", True), ("H", True), ("historically", True), ("once", False)):
+    if is_from_now and (expr.op, holds) in (
+        ("G", True),
+        ("H", True),
+        ("historically", True),
+        ("once", False),
+        ("F", False),
+    ):
         return _at_this_step(expr.operand, clause, holds=holds)
     return _NONE
 

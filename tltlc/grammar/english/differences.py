@@ -5,7 +5,7 @@ from __future__ import annotations
 from tltlc.core.record import record, replace
 from tltlc.grammar.english.answers import is_negative
 from tltlc.grammar.english.intervals import Intervals
-from tltlc.grammar.english.quantities import MIRRORED, Change, Number, begun, comparison
+from tltlc.grammar.english.quantities import MIRRORED, Change, Number, begun, changed_value, comparison
 from tltlc.grammar.english.rules import Reading
 from tltlc.grammar.english.terminals import Term
 from tltlc.grammar.mistakes.sentences.states import ATOM, OR, State
@@ -132,6 +132,7 @@ class Differences(Intervals):
 
 def changed(difference: Difference, before: Number) -> State | None:
     """Return that a number has changed by so much since it had a value."""
-    operator, sign = ("-", MIRRORED[difference.sign]) if difference.change == "falls" else ("+", difference.sign)
-    then = Number(f"{before.text} {operator} {difference.step.text}", difference.term)
+    sign = MIRRORED[difference.sign] if difference.change == "falls" else difference.sign
+    value = changed_value(difference.term, before.text, difference.change, difference.step)
+    then = Number(value, difference.term)
     return comparison(Number(difference.term.text, difference.term), sign, then)

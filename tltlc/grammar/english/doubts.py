@@ -64,8 +64,20 @@ def _counts_from_start(answer: str) -> bool:
 
 def lasts_on(event: str) -> bool:
     """Whether an event is met again at each further step: a condition that has held for a time, or a count."""
+    parts = _conjuncts(event)
+    if parts[1:]:
+        return not any(part.startswith(("begins ", "ends ")) for part in parts) and any(map(lasts_on, parts))
     is_held = "time_holding(" in event and " >" in event and " or " not in event
     is_counted = _COUNTED.fullmatch(event) is not None
     return (is_held or is_counted or event.startswith("historically for ")) and not event.startswith(
         ("begins ", "ends ")
     )
+
+
+def _conjuncts(text: str) -> list[str]:
+    """Return the parts of a condition between each `and` outside of brackets."""
+    parts = [""]
+    for part in text.split(" and "):
+        is_open = parts[-1].count("(") > parts[-1].count(")")
+        parts = [*parts[:-1], f"{parts[-1]} and {part}"] if is_open else [*parts, part]
+    return parts[1:]

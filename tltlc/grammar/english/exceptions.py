@@ -80,21 +80,6 @@ class Exceptions(Rules):
     def _when_meant(self, event: Event) -> str:
         return self._counted_from.get(event.text, "") if isinstance(event, State) else ""
 
-    def eventually_within_unless(self, duration: Duration, state: State, event: Event) -> list[Asked] | None:
-        """Return the answers of `eventually within 4 s a unless b`: b at the step of the condition, or in that time."""
-        exception = as_state(event)
-        if exception is None:
-            return None
-        excused = State(f"{exception.at(OR)} or (eventually within {duration.text} {state.at(ATOM)})", OR)
-        what = f"if `{exception.text}`"
-        return [
-            Asked(Answer("now", excused), f"{what} counts at the step of the condition alone", is_formula=True),
-            Asked(Answer("within", joined([state, exception], "or"), duration.text), f"{what} in that time is enough"),
-        ]
-
-    def within_unless_either(self, state: State, duration: Duration, event: Event) -> list[Asked] | None:
-        return self.eventually_within_unless(duration, state, event)
-
     # What an exception excuses.
 
     def now_excepted(self, *parts: State | Event) -> Asked | None:
@@ -261,6 +246,21 @@ class Exceptions(Rules):
         timed = _TIMED.fullmatch(held.text) if held is not None else None
         return _timed_unless(timed, excuse, "avoid") if timed and excuse is not None and sign in (">", ">=") else None
 
+    def implied_not_held(
+        self, event: Event, state: State, sign: str, duration: Duration, *exception: State
+    ) -> list[Reading] | None:
+        """Return the readings of `keep a implies never b for more than 5 s`: time without a counts, or not."""
+        during = as_state(event)
+        if during is None or sign not in (">", ">=") or duration.is_steps or begun_text(during) == during.text:
+            return None
+        states = [state, *(excuse.negated() for excuse in exception)]
+        held, whole = joined(states, "and"), joined([during, *states], "and")
+        limit = f"{sign} {duration.text}"
+        return [
+            Reading((f"avoid time_holding({whole.text}) {limit}",), f"if time without `{during.text}` does not count"),
+            Reading((f"keep {during.at(OR)} implies not time_holding({held.text}) {limit}",), "if it does"),
+        ]
+
     def short_unless(self, state: State, duration: Duration, event: Event) -> _Found:
         return self.avoid_held_unless(state, ">", duration, event)
 
@@ -270,6 +270,9 @@ class Exceptions(Rules):
         assert isinstance(second, State) and isinstance(excuse, State)
         between = "then" if not time or not isinstance(time[0], Duration) else f"then within {time[0].text}"
         denied = excuse.negated()
+        if first == second and time and isinstance(time[0], Duration) and not first.text.startswith(_PAST):
+            begun = begun_text(first)
+            return Reading((f"avoid ({begun}) then within {time[0].text} ({begun} and {denied.at(ATOM)})",))
         at_second = f"avoid {_operand(first)} {between} {_with(second, denied)}"
         if excuse.text.startswith(_PAST):
             return Reading((at_second,))

@@ -28,9 +28,10 @@ _UNCLEAR: Final = frozenset(
 )
 """Words beside two conditions that the forms would take for their opposite, or leave out."""
 _INEXPRESSIBLE: Final = frozenset(
-    "unless except otherwise else changes change changing toggles toggle flips flip switches switch".split()
+    "unless except otherwise else changes change changing toggles toggle flips flip switches switch "
+    "alternate half".split()
 )
-"""Words for exceptions, for two cases and for changes, which no form has."""
+"""Words for exceptions, for two cases, for changes and shares, which no form has."""
 _PAST_WORDS: Final = frozenset("last past previous".split())
 """Words before a time that lies behind each step."""
 _WHOLE: Final = frozenset("for always throughout whole no not never during".split())
@@ -190,6 +191,8 @@ def forms(parts: Sequence[Part]) -> tuple[Form, ...]:
         return ()
     if not _INEXPRESSIBLE.isdisjoint(words):
         return ()
+    if numbers and not _NEGATIONS.isdisjoint(words) and "more" not in words:
+        return ()  # `never 3 times` allows two
     if len(conditions) > 1 and not numbers and not _UNCLEAR.isdisjoint(words):
         return ()
     if key not in PATTERNS or len(durations) > 1 or len(numbers) > 1 or not set(words).isdisjoint(_PAIRED):

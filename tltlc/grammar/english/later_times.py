@@ -70,7 +70,7 @@ class LaterTimes(Rules):
         return [
             replace(either, condition=f"if `{exception.text}` at a step of that time is enough"),
             replace(alone, answer=Answer("now", excused),
-                    condition=f"if `{exception.text}` counts at the step of the condition alone"),
+                    condition=f"if `{exception.text}` counts only at the first step of that time"),
         ]  # fmt: skip
 
     def opposite_in_window(self, event: Event, state: State, window: Window, exception: Event | None = None) -> _Found:
@@ -102,7 +102,7 @@ class LaterTimes(Rules):
     def exactly_after(self, state: State, duration: Duration, event: Event) -> _Found:
         """Return the rule of `b exactly 2 s after a`; for a long time, one that looks back."""
         asked, condition = self.delayed(state, duration), as_state(event)
-        if asked is not None:
+        if asked is not None and asked.late is None:
             return self.first("when", event, [asked])
         return None if condition is None else self._long_after(state, duration, condition)
 
@@ -116,6 +116,27 @@ class LaterTimes(Rules):
         """Return the rule of `2 s after a without c, b`."""
         free = State(f"(not {avoided.at(ATOM)} since {event.at(ATOM)})")
         return self._long_after(state, duration, event, free)
+
+    def _late(self, event: Event, asked: Asked, duration: Duration) -> list[Reading]:
+        """Return the readings of `when a, b after 5 s`: at that step, up to it, or from it on."""
+        state, answer = as_state(event), asked.answer
+        if state is None or not are_simple(state, answer.state):
+            return []
+        begun, b = begun_text(state), answer.state
+        later = f"once {begun} and time_since({begun}) >= {answer.time}"
+        then = self._long_after(b, duration, State(begun))
+        return [
+            *(
+                [replace(then, condition=f"if it must hold {answer.time} after the last `{begun}`, at that step")]
+                if then
+                else []
+            ),
+            Reading(
+                (f"keep {begun} implies eventually within {answer.time} {b.at(ATOM)}",),
+                f"if it may come earlier, at most {answer.time} later",
+            ),
+            Reading((f"keep {later} implies {b.at(OR)}",), f"if it must hold from then on, up to the next `{begun}`"),
+        ]
 
     def _long_after(self, state: State, duration: Duration, event: State, free: State | None = None) -> Reading | None:
         steps = round(self.steps(duration), 6)
@@ -135,6 +156,22 @@ class LaterTimes(Rules):
     def and_for_time_after(self, state: State, duration: Duration) -> State | None:
         """Return the condition of `a and for 2 s after`: a now, or at most so long ago."""
         return None if is_edge(state) else State(f"once within {duration.text} {state.at(ATOM)}")
+
+    def long_before(self, state: State, duration: Duration) -> list[Asked] | None:
+        """Return the readings of `a at least 30 s before`: the last a, or any of them."""
+        if duration.is_steps or state.level > ATOM:
+            return None
+        a = state.at(ATOM)
+        last = State(f"once {a} and time_since({state.text}) >= {duration.text}", AND)
+        return [
+            Asked(Answer("now", last), f"if the last `{state.text}` must be so long ago"),
+            Asked(Answer("now", State(f"time_holding(once {a}) >= {duration.text}")), "if an earlier one counts, too"),
+        ]
+
+    def held_before(self, state: State, duration: Duration) -> Asked:
+        asked = super().held_before(state, duration)
+        self._lasted[asked.answer.state.text] = state
+        return asked
 
     def held_until_then(self, state: State, duration: Duration) -> Asked | None:
         """Return the answer of `when a, b for at least 2 s` that looks back, where b has lasted until then."""
@@ -161,7 +198,25 @@ class LaterTimes(Rules):
         begun, lasted = as_state(event), self._lasted.get(answers[0].answer.state.text)
         if begun is not None and lasted is not None and begun.text in (lasted.text, begun_text(lasted)):
             return None
-        return super().implies(event, answers)
+        is_ended = lasted is not None and begun is not None and begun_text(lasted.negated()) == begun_text(begun)
+        if is_ended and not answers[1:]:
+            # It ends at this step, so the time is that up to the step before.
+            asked = answers[0]
+            before = State(f"previously {asked.answer.state.at(ATOM)}")
+            answers = [replace(asked, answer=replace(asked.answer, state=before), condition="")]
+        if answers[0].late is not None:
+            return self._late(event, answers[0], answers[0].late)
+        return super().implies(_beginning(event, answers), answers)
+
+    def first(self, when: When, event: Event, answers: list[Asked]) -> _Found:
+        if answers[0].late is not None:
+            return self._late(event, answers[0], answers[0].late)
+        return super().first(when, _beginning(event, answers), answers)
+
+    def last(self, answers: list[Asked], when: When, event: Event) -> _Found:
+        if answers[0].late is not None:
+            return self._late(event, answers[0], answers[0].late)
+        return super().last(answers, when, _beginning(event, answers))
 
     # Windows after an event.
 
@@ -238,3 +293,15 @@ class LaterTimes(Rules):
 
 def _plain(text: str) -> str:
     return text.replace("(", "").replace(")", "")
+
+
+def _beginning(event: Event, answers: list[Asked]) -> Event:
+    """Return the beginning of an event after which something lasts for at least 2 s and at most 4 s; else the event.
+
+    Asked for at each step of an event that lasts, the end would come too late for its last step or for its first.
+    """
+    state, first, last = as_state(event), answers[0].answer, answers[-1].answer
+    is_limited = (first.kind, last.kind) == ("lasting", "within") and last.state.text == first.state.negated().text
+    if state is None or not is_limited or state.level > ATOM or is_edge(state):
+        return event
+    return State(f"begins {state.at(ATOM)}")

@@ -75,6 +75,12 @@ class Orders(Rules):
             return None
         return Goals(goals.states * int(number)) if 0 < int(number) * len(goals.states) <= _MOST_GOALS else None
 
+    def repeated_then(self, *parts: Event | str) -> Goals | None:
+        """Return goals that are repeated, and a last one: `(a then b) 3 times then c`."""
+        goals, last = self.repeated(*parts[:-1]), parts[-1]
+        state = None if isinstance(last, str) else as_state(last)
+        return None if goals is None or state is None else Goals((*goals.states, state))
+
     def list(self, *states: State) -> Goals:
         return Goals(states)
 
@@ -90,6 +96,18 @@ class Orders(Rules):
     def reach_each_then(self, goals: Goals, last: State) -> _Found:
         return Reading(tuple(f"reach {state.at(OR)} then {last.at(OR)}" for state in goals.states))
 
+    def reach_goals_before(self, goals: Goals, end: State) -> _Found:
+        """Return the readings of `reach a then b before c`: all of them come before c."""
+        is_nested = any(" then " in goal.text for goal in goals.states)
+        if len(goals.states) < 2 or end.level > ATOM or is_nested or end in goals.states:
+            return None
+        free, last = end.negated().at(ATOM), _last_of(goals).at(ATOM)
+        own = joined([_last_of(goals), end.negated()], "and").at(ATOM)
+        return [
+            Reading((f"require {free} until {own}",), f"if all of them must come before `{end.text}`"),
+            Reading((f"require {free} weak_until {last}",), f"if none of them need come, but `{end.text}` not before"),
+        ]
+
     def reach_goals_within(self, goals: Goals, duration: Duration) -> _Found:
         """Return the readings of `a then b then c within 5 s`, by the step from which the time counts."""
         if len(goals.states) < 2:
@@ -97,17 +115,14 @@ class Orders(Rules):
         first, *between, last = goals.states
         if is_negative(last) or any(" then " in goal.text or "always " in goal.text for goal in goals.states):
             return None
-        time, earlier = duration.text, [first, *between]
-        whole = first
-        for state in goals.states[1:]:
-            whole = joined([state, State(f"previously once {whole.at(ATOM)}")], "and")
+        time, earlier, whole = duration.text, [first, *between], _last_of(goals)
         readings = [
             Reading(
                 (f"require eventually within {time} {whole.at(ATOM)}",),
                 "if the time is for all of them, from the first step of play on",
             )
         ]
-        if between and _may_begin(first):
+        if between and _may_begin(first) and len(set(goals.states)) == len(goals.states):
             # The time counts from the last beginning of the first goal.
             timed = joined([last, State(f"once within {time} {begun_text(first)}")], "and")
             goal = " then ".join([*(state.at(OR) for state in earlier), timed.at(ATOM)])
@@ -390,3 +405,11 @@ def _counted_goals(events: Sequence[Event]) -> list[Goals] | None:
             return None
         readings.append(Goals(tuple(states), condition))
     return readings
+
+
+def _last_of(goals: Goals) -> State:
+    """Return the condition of the last goal at a step before which the others have come, in their order."""
+    whole, *later = goals.states
+    for state in later:
+        whole = joined([state, State(f"previously once {whole.at(ATOM)}")], "and")
+    return whole

@@ -18,7 +18,8 @@ from tltlc.grammar.mistakes.sentences.states import AND, ATOM, OR, State, joined
 from tltlc.grammar.mistakes.sentences.vocabulary import NEGATED_SIGN
 
 _COMPARED: Final = re.compile(r"(times\(.*\)) (<=|<|>=|>) (\d+)")
-_ORDINALS: Final = {"2": "second", "3": "third", "4": "fourth", "5": "fifth"}
+_MOST_COUNTED: Final = 10
+"""The highest number that the rule of `every third a` names."""
 _WHILE: Final = ("while", "as long as", "when")
 
 _Found = Reading | list[Reading] | None
@@ -240,12 +241,14 @@ class Periods(Totals):
     def five(self) -> str:
         return "5"
 
-    def each_nth(self, number: str, term: Term, state: State) -> None:
-        self.limits.append(
-            f"no clause can say what holds at each {_ORDINALS[number]} `{term.text}`: let the game count, and supply "
-            f"the number; `times({term.text}) == {number}` is about one of play, "
-            f"`times_since({term.text}, q) == {number}` about one since each `q`"
-        )
+    def each_nth(self, number: str, term: Term, answers: list[Asked]) -> list[Reading]:
+        """Return the rule of `every third a is followed by b`, which counts up to a last one."""
+        numbers = range(int(number), _MOST_COUNTED + 1, int(number))
+        counted = joined([State(f"times({term.text}) == {each}") for each in numbers], "or")
+        found = self.first("when", joined([State(f"begins {term.text}"), counted], "and"), answers)
+        readings = found if isinstance(found, list) else [] if found is None else [found]
+        last = f"up to number {numbers[-1]}: no clause counts for ever"
+        return [replace(one, condition=" and ".join(filter(None, (one.condition, last)))) for one in readings]
 
     # Up to an event.
 
@@ -264,6 +267,19 @@ class Periods(Totals):
 
     def count_from_to(self, counted: Counted, end: State, start: State) -> _Found:
         return self.count_between(counted, Span(start, end))
+
+    def when_count_before(self, when: When, event: Event, counted: Counted, end: State) -> _Found:
+        """Return the rule of `after a, at most 2 b before c`: each beginning of a begins a new count."""
+        start = as_state(event)
+        if start is None or begun(start).text in (begun(end).text, begun(counted.state).text):
+            return None
+        return self.count_between(counted, Span(start, end))
+
+    def implied_count_before(self, event: Event, counted: Counted, end: State) -> _Found:
+        return self.when_count_before("when", event, counted, end)
+
+    def count_before_when(self, counted: Counted, end: State, when: When, event: Event) -> _Found:
+        return self.when_count_before(when, event, counted, end)
 
     def count_between(self, counted: Counted, span: Span) -> _Found:
         """Return the rule of `at most 2 jumps between two landings`; each one begins a new count."""
@@ -339,14 +355,18 @@ class Periods(Totals):
         return [count, replace(second_step, condition="if each step counts")]
 
     def reach_count_without(self, counted: Counted, between: State) -> _Found:
-        """Return the readings of `reach a 3 times without b`: none between them, or none at all."""
-        goal = self.limit_count(replace(counted, sign=">="))
-        since = _times_since(replace(counted, sign=">="), between)
-        if since is None or not isinstance(goal, Reading):
+        """Return the readings of `reach a 3 times without b`: none up to the third, between them, or at all."""
+        goal, since = (
+            f"times({counted.state.text}) >= {counted.number}",
+            _times_since(replace(counted, sign=">="), between),
+        )
+        if since is None or between.level > ATOM:
             return None
+        until = f"require {between.negated().at(ATOM)} until {goal}"
         return [
+            Reading((until,), f"if `{between.text}` must not come before the last of them"),
             Reading((f"reach {since.text}",), f"if `{between.text}` must not come between them"),
-            Reading((*goal.clauses, f"avoid {between.text}"), f"if `{between.text}` must never come"),
+            Reading((f"reach {goal}", f"avoid {between.text}"), f"if `{between.text}` must never come"),
         ]
 
     def avoid_after_without(self, second: State, first: State, between: State) -> _Found:
@@ -354,7 +374,7 @@ class Periods(Totals):
 
     def exactly_after(self, state: State, duration: Duration, event: Event) -> _Found:
         asked = self.delayed(state, duration)
-        return None if asked is None else self.first("when", event, [asked])
+        return None if asked is None or asked.late is not None else self.first("when", event, [asked])
 
     def reach_count_before(self, counted: Counted, end: State) -> _Found:
         state = as_state(counted)

@@ -180,7 +180,8 @@ PHRASES: Final[Mapping[str, str]] = {
     "across whole run|across whole game|per game|per run|per episode",
     "falls_below": "falls below|drops below|goes below|drops under|falls under",
     "rises_above": "rises above|goes above|goes over",
-    "comes_to": "reaches|hits|gets to|comes to|arrives at|climbs to|gets up to",
+    "comes_to": "reaches|hits|gets to|comes to|arrives at|climbs to|gets up to|reach|hit|get to|come to|climb to|"
+    "get up to",
     "is_never": "is never|never",
     "when_it": "at start of|at beginning of|at|when|on|from|as of|at time of|at moment of|at step of|"
     "as when|than when|than at|than at start of|as at|as at start of",
@@ -226,10 +227,12 @@ PHRASES: Final[Mapping[str, str]] = {
     "greater than or equal to|more than or equal to",
     "more": "more than|greater than|above|over|exceeds|higher than|longer than|exceed|bigger than|larger than",
     "less": "less than|fewer than|below|under|lower than|shorter than|smaller than",
-    "falls": "decreases|decrease|drops|drop|falls|fall|shrinks|shrink|goes down|go down|is reduced|gets lower|"
+    "falls": "falling|dropping|decreasing|shrinking|going down|"
+    "decreases|decrease|drops|drop|falls|fall|shrinks|shrink|goes down|go down|is reduced|gets lower|"
     "is lowered|"
     "goes lower|is decreased|sinks|declines",
-    "rises": "increases|increase|rises|rise|grows|grow|goes up|go up|gets higher|is raised|goes higher|is increased",
+    "rises": "rising|increasing|growing|going up|"
+    "increases|increase|rises|rise|grows|grow|goes up|go up|gets higher|is raised|goes higher|is increased",
     "stays": "stays the same|stay the same|stays same|stay same|remains the same|remains same|does not change|"
     "doesn't change|do not change|must not change|"
     "cannot change|can't change|may not change|should not change|"

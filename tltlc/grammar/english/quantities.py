@@ -67,11 +67,32 @@ class ChangeBy:
 
     def compared_with(self, before: str) -> State | None:
         """Return the condition that the number has changed so much since it had the value ``before``."""
-        operator = "-" if self.change == "falls" else "+"
-        is_exact = self.step.is_int or self.step.term is None
+        is_exact = self.step.is_int or (self.step.term is None and not self.step.text.endswith("%"))
         kind = self.term if is_exact else Term("REAL", self.term.text)
-        now, then = Number(self.term.text, kind), Number(f"{before} {operator} {self.step.text}", kind)
+        now, then = Number(self.term.text, kind), Number(changed_value(self.term, before, self.change, self.step), kind)
         return _change(now, MIRRORED[self.sign] if self.change == "falls" else self.sign, then)
+
+
+def share_of(term: Term, step: Number) -> float | None:
+    """Return 0.3 for a change by 30 %, which is a share of the value before; None for other changes.
+
+    Of a number that is itself a share, or that may be below 0, 30 % are a difference.
+    """
+    number, _, unit = step.text.partition(" ")
+    ends = () if term.declared is None else term.declared.ends
+    is_difference = any("%" in end or end == "1" or end.startswith("-") for end in ends)
+    return float(number) / 100 if unit == "%" and not is_difference else None
+
+
+def changed_value(term: Term, before: str, change: Change, step: Number) -> str:
+    """Return the value of a number after it has changed: `coins - 3`, or `0.7 * coins` where it falls by 30 %.
+
+    ``before`` is its value before that.
+    """
+    share = share_of(term, step)
+    if share is not None:
+        return f"{round(1 - share if change == 'falls' else 1 + share, 10):g} * {before}"
+    return f"{before} {'-' if change == 'falls' else '+'} {step.text}"
 
 
 class Quantities:

@@ -21,6 +21,7 @@ from tltlc.grammar.english.ordinals import Ordinals
 from tltlc.grammar.english.periods import Periods
 from tltlc.grammar.english.rules import Reading, Rules
 from tltlc.grammar.english.sentence_parser import SentenceParser, sentence_parser
+from tltlc.grammar.english.tails import Tails
 from tltlc.grammar.english.terminals import UNKNOWN, Term, known_terms, terms
 from tltlc.grammar.english.timed_answers import TimedAnswers
 from tltlc.grammar.english.toggles import Toggles
@@ -62,6 +63,7 @@ _MOST: Final = 64
 
 
 class Meanings(
+    Tails,
     TwoRules,
     Exceptions,
     Toggles,

@@ -8,7 +8,7 @@ from tltlc.core.record import record, replace
 from tltlc.grammar.english.answers import MOST_STEPS, Answers, Asked, is_negative, lasting_formula
 from tltlc.grammar.english.doubts import lasts_on
 from tltlc.grammar.english.events import Counted, Crossing, Event, Held, as_state, joined_events
-from tltlc.grammar.english.quantities import MIRRORED, Change, Duration, Number
+from tltlc.grammar.english.quantities import Change, Duration, Number
 from tltlc.grammar.english.terminals import Term
 from tltlc.grammar.mistakes.sentences.answers import Answer
 from tltlc.grammar.mistakes.sentences.rules import answered
@@ -77,9 +77,6 @@ class Rules(Answers):
         state = self.changes_by_compared(term, change, ">=", step)
         return None if state is None else Reading((f"avoid {state.text}",))
 
-    def keep_change_below(self, term: Term, change: Change, sign: str, step: Number, *_: Duration) -> _Found:
-        return self.keep_change(term, change, {">": "<=", ">=": "<"}.get(sign, ""), step)
-
     def avoid_until(self, state: State, end: State) -> _Found:
         if not are_simple(state, end):
             return None
@@ -96,14 +93,6 @@ class Rules(Answers):
     def avoid_without_before(self, state: State, event: Event) -> _Found:
         condition = as_state(event)
         return None if condition is None else Reading((f"keep {state.at(OR)} implies once {condition.at(ATOM)}",))
-
-    def keep_change(self, term: Term, change: Change, sign: str, step: Number) -> _Found:
-        if sign in ("<", "<=") and change == "varies":
-            return Reading((f"keep abs({term.text} - previous({term.text})) {sign} {step.text}",))
-        if sign not in ("<", "<=") or change not in ("falls", "rises"):
-            return None
-        operator, relation = ("-", MIRRORED[sign]) if change == "falls" else ("+", sign)
-        return Reading((f"keep {term.text} {relation} previous({term.text}) {operator} {step.text}",))
 
     def keep(self, state: State) -> _Found:
         is_later = state.text in self.changing or state.text.startswith("time_holding(")
@@ -232,7 +221,9 @@ class Rules(Answers):
 
     def last(self, answers: list[Asked], when: When, event: Event) -> _Found:
         state, answer = as_state(event), answers[0].answer
-        if state is None or not are_simple(state, answer.state):
+        # In `keep b when a or c for 2 s`, the time shows that c belongs to the condition.
+        is_timed = answer.keyword == "keep" and isinstance(event, State) and "time_holding(" in event.text
+        if state is None or not are_simple(answer.state) or not (is_timed or are_simple(state)):
             return None
         if answer.kind == "always" and answer.is_negative and when != "after" and not answers[1:]:
             return _conditional(when, event, [Asked(replace(answer, kind="now"))])
@@ -322,6 +313,8 @@ def _conditional(when: When, event: Event, answers: list[Asked]) -> _Found:
 
 def _answer_readings(when: When, event: Event, state: State, asked: Asked) -> list[Reading]:
     answer = asked.answer
+    if asked.late is not None:
+        return []
     is_edge = state.text.startswith(("begins ", "ends "))
     if asked.settled is not None and not is_edge:
         asked = Asked(replace(answer, state=asked.settled))
@@ -334,7 +327,9 @@ def _answer_readings(when: When, event: Event, state: State, asked: Asked) -> li
     if asked.is_formula:
         if when == "if" and asked.until is not None:
             return _ending(state, asked, *asked.until)
-        if asked.is_once and not is_edge:
+        if asked.is_timed and lasts_on(state.text):
+            state = State(f"begins ({state.text})")
+        elif asked.is_once and not is_edge:
             state = State(f"begins {state.at(ATOM)}")
         return [Reading((f"keep {state.at(OR)} implies {answer.state.at(OR)}",), asked.condition)]
     if when in LASTING and answer.keyword == "reach":

@@ -8,7 +8,7 @@ from tltlc.grammar.english.events import Event, as_state
 from tltlc.grammar.english.intervals import Span
 from tltlc.grammar.english.quantities import Change, Duration, Number
 from tltlc.grammar.english.rules import Reading, When, are_simple, begun_text
-from tltlc.grammar.english.stretches import Stretches
+from tltlc.grammar.english.stretches import Stretches, each_reading, reached_states
 from tltlc.grammar.english.terminals import Term
 from tltlc.grammar.mistakes.declared_names import DeclaredNames
 from tltlc.grammar.mistakes.sentences.answers import Answer
@@ -111,6 +111,15 @@ class Sequels(Stretches):
         answers = self.before_in_time(state, end, duration)
         return None if answers is None else [replace(answers[0], condition="")]
 
+    def must_be_reached_before(self, left: Number, right: Number, end: State) -> _Found:
+        """Return the readings of `coins must reach 50 before the level ends`."""
+        if end.level > ATOM:
+            return None
+        free = end.negated().at(ATOM)
+        return each_reading(
+            reached_states(left, right), lambda goal: Reading((f"require {free} until {goal.at(ATOM)}",))
+        )
+
     def must_come_before(self, state: State, end: State) -> _Found:
         """Return the readings of `a must come before b`."""
         if not are_simple(state, end):
@@ -173,18 +182,10 @@ class Sequels(Stretches):
             ),
             Asked(
                 Answer("now", State(f"({b} or {lasting})")),
-                f"if `{exception.text}` counts at the first step alone",
+                f"if `{exception.text}` counts only at the first step of that time",
                 is_formula=True,
             ),
         ]
-
-    def lasting_unless_first(self, duration: Duration, state: State, event: Event) -> list[Asked] | None:
-        return self.lasting_unless(state, duration, event)
-
-    def lasting_when_unless(
-        self, state: State, duration: Duration, when: When, event: Event, exception: Event
-    ) -> _Found:
-        return self._each_reading(when, event, self.lasting_unless(state, duration, exception) or [])
 
     def lasts_unless(self, state: State, *rest: Duration | tuple[Duration, Duration] | Event) -> _Found:
         """Return the rule of `a lasts at least 3 s and at most 8 s unless b`: b may end it sooner."""
@@ -218,12 +219,6 @@ class Sequels(Stretches):
         if excused is None or lasting is None:
             return None
         return [replace(excused, condition="for each step with the condition", is_formula=True), *lasting]
-
-    def never_unless(self, state: State, event: Event) -> Asked | None:
-        exception = as_state(event)
-        if exception is None or not are_simple(state, exception):
-            return None
-        return Asked(Answer("now", joined([state.negated(), exception], "or")))
 
     # What must have come since the event before.
 
@@ -270,21 +265,23 @@ class Sequels(Stretches):
         known = self._answers_at(event, answers)
         if known is None:
             return None
-        compared = self._compared_from(when, event, known)
+        compared = self._compared_for_time(event, known) or self._compared_from(when, event, known)
         return super().first(when, event, known) if compared is None else compared
 
     def last(self, answers: list[Asked], when: When, event: Event) -> _Found:
         known = self._answers_at(event, answers)
         if known is None:
             return None
-        compared = self._compared_from(when, event, known)
+        compared = self._compared_for_time(event, known) or self._compared_from(when, event, known)
         return super().last(known, when, event) if compared is None else compared
 
     def implies(self, event: Event, answers: list[Asked]) -> _Found:
         known = self._answers_at(event, answers)
         if known is None:
             return None
-        compared = self._compared_from("after", event, known) if self.is_again else None
+        compared = self._compared_for_time(event, known)
+        if compared is None and self.is_again:
+            compared = self._compared_from("after", event, known)
         return super().implies(event, known) if compared is None else compared
 
     def keep_if(self, event: Event, answers: list[Asked]) -> _Found:
@@ -308,6 +305,24 @@ class Sequels(Stretches):
 
     def then_on_from(self, answers: list[Asked], event: Event) -> _Found:
         return self.from_then_on(event, answers)
+
+    def _compared_for_time(self, event: Event, answers: list[Asked]) -> list[Reading] | None:
+        """Return the readings of `after a, b never falls for 2 s`: from the step after a on, or from that of a on."""
+        state, answer = as_state(event), answers[0].answer
+        is_compared = answer.kind == "lasting" and "previous(" in answer.state.text
+        if not is_compared or state is None or answers[1:] or answers[0].condition:
+            return None
+        lasting = f"always for {answer.time} {answer.state.at(ATOM)}"
+        return [
+            Reading(
+                (f"keep {state.at(OR)} implies weak_next {lasting}",),
+                f"from the step after `{state.text}` on",
+            ),
+            Reading(
+                (f"keep {state.at(OR)} implies {lasting}",),
+                f"from the step of `{state.text}` on, which is then compared with the step before it",
+            ),
+        ]
 
     def _compared_from(self, when: When, event: Event, answers: list[Asked]) -> list[Reading] | None:
         """Return the readings of `after a, b == previous(b)`: the step of a is compared with the one before, or not."""

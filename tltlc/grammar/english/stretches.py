@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
+
 from tltlc.core.record import replace
 from tltlc.grammar.english.answers import MOST_STEPS, Asked, is_negative
 from tltlc.grammar.english.events import Counted, Event, Held, as_state
@@ -35,16 +37,19 @@ class Stretches(Intervals, Orders):
 
     def reached_in_time(self, left: Number, right: Number, duration: Duration) -> _Found:
         """Return the goal of `laps must reach 3 within 60 s`."""
-        if left.is_int:
-            exact = comparison(left, "==", right)
-            return None if exact is None else self.reach_within(exact, duration)
-        readings = []
-        for sign, whence in ((">=", "below"), ("<=", "above")):
-            goal = comparison(left, sign, right)
-            found = None if goal is None else self.reach_within(goal, duration)
-            if isinstance(found, Reading):
-                readings.append(replace(found, condition=f"if `{left.text}` comes to it from {whence}"))
-        return readings
+        return each_reading(reached_states(left, right), lambda goal: self.reach_within(goal, duration))
+
+    def must_be_reached(self, left: Number, right: Number) -> _Found:
+        """Return the goal of `coins must reach 50`."""
+        return each_reading(reached_states(left, right), lambda goal: Reading((f"reach {goal.text}",)))
+
+    def comes_within(self, left: Number, right: Number, duration: Duration) -> list[Asked]:
+        """Return the answer of `when a, coins must reach 50 within 3 s`."""
+        return [
+            replace(asked, condition=condition)
+            for goal, condition in reached_states(left, right)
+            if isinstance(asked := self.within(goal, duration), Asked)
+        ]
 
     def gone_in_time(self, term: Term, duration: Duration) -> Reading:
         """Return the goal of `the shield is gone within 5 s`."""
@@ -243,3 +248,30 @@ def _kept(when: When, event: Event, state: State, what: str = "") -> Reading | N
         return None
     answer = f"always {state.at(ATOM)}" if when == "after" else state.at(OR)
     return Reading((f"keep {condition.at(OR)} implies {answer}",), what)
+
+
+def reached_states(number: Number, limit: Number) -> list[tuple[State, str]]:
+    """Return the condition that a number has reached a limit, and where it comes from if both ways are possible."""
+    ends = number.ends
+    signs: tuple[tuple[str, str], ...]
+    if limit.text in ends and limit.text != (*ends, "")[1]:
+        signs = (("<=", ""),)
+    elif limit.text in ends:
+        signs = ((">=", ""),)
+    else:
+        signs = (
+            (">=", f"if `{number.text}` comes to it from below"),
+            ("<=", f"if `{number.text}` comes to it from above"),
+        )
+    states = ((comparison(number, sign, limit), condition) for sign, condition in signs)
+    return [(state, condition) for state, condition in states if state is not None]
+
+
+def each_reading(goals: Sequence[tuple[State, str]], rule: Callable[[State], _Found]) -> list[Reading]:
+    """Return the readings of a rule about each of several goals, which come with conditions."""
+    readings: list[Reading] = []
+    for goal, condition in goals:
+        found = rule(goal)
+        each = found if isinstance(found, list) else [found] if found is not None else []
+        readings += (replace(r, condition=" and ".join(filter(None, (condition, r.condition)))) for r in each)
+    return readings

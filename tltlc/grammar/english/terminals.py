@@ -20,7 +20,9 @@ _SIGNS: Final = {
     "LSQB": "_LBRACKET", "RSQB": "_RBRACKET",
 }  # fmt: skip
 _TIME_UNITS: Final = ("s", "ms", "min", "h", "step", "steps")
-_TOTALS: Final = ("total_time",)
+_TOTALS: Final = ("total_time", "total_time_since", "total_time_within")
+_VALUES: Final = ("value_at", "highest_since", "lowest_since", "highest_within", "lowest_within")
+"""Functions whose value is one that their first argument had."""
 _COUNTS: Final = ("times", "times_since", "times_within")
 _ARITHMETIC: Final = ("+", "-", "*", "/", "^")
 _NUMBERS: Final = ("previous", "initial", "highest", "lowest", "time_since", "time_holding", "abs", "min", "max")
@@ -185,7 +187,7 @@ def _name(words: Words, following: Words) -> Term | None:
             return Term("INT", text)
         if name in _TOTALS:
             return Term("REAL", text)
-        if name == "value_at":
+        if name in _VALUES or (name == "previous" and len(words) > 4):
             return _value_of(words.declared(2), text)
         return _value_of(of, text) if name in _NUMBERS else Term("BOOL", text)
     if any(declared_inside.members for at in range(len(words)) if (declared_inside := words.declared(at))):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Final
 
 from tltlc.core.record import record, replace
-from tltlc.grammar.english.answers import Asked, is_negative
+from tltlc.grammar.english.answers import Asked, is_negative, operated
 from tltlc.grammar.english.events import Event, Held, as_state
 from tltlc.grammar.english.quantities import Duration
 from tltlc.grammar.english.rules import Reading, Rules, When, begun_text
@@ -47,6 +47,12 @@ class TimedAnswers(Rules):
         if state is not None and isinstance(event, Held) and event.sign in ("", ">="):
             self._held[state.text] = event
         return state
+
+    def answers(self, *asked: Asked) -> list[list[Asked]]:
+        """Return answers that are asked for together; none if one denies for a time what another asks for in it."""
+        wanted = {one.answer.state.text for one in asked if one.answer.kind == "within"}
+        denied = {one.answer.state.negated().text for one in asked if one.answer.kind in ("lasting", "always")}
+        return [] if wanted & denied else super().answers(*asked)
 
     # Answers that last.
 
@@ -179,7 +185,33 @@ class TimedAnswers(Rules):
             *(_also(asked, f"`{kept.text}` must hold from the condition on") for asked in at_once),
         ]
 
+    def within_until(self, state: State, duration: Duration, end: State) -> list[Asked]:
+        """Return the answers of `a within 1 s until b`."""
+        return self.within_then_until(state, duration, state, end)
+
+    def within_then_free(self, state: State, time: Duration, denied: State, length: Duration) -> Asked:
+        if self.settled.get(state.text, state) == denied:
+            free = State(f"weak_next always for {length.text} {denied.negated().at(ATOM)}")
+            return Asked(Answer("within", joined([denied, free], "and"), time.text))
+        return self.within_then_lasting(state, time, denied.negated(), length)
+
+    def until_after(self, state: State, duration: Duration, end: State) -> list[Asked] | None:
+        """Return the answers of `a until 2 s after b`: a until b, and for that time from b on."""
+        if end.level > ATOM or is_negative(end):
+            return None
+        a, last = state.at(ATOM), joined([end, State(f"always for {duration.text} {state.at(ATOM)}")], "and").at(ATOM)
+        return [
+            Asked(Answer("now", State(f"({a} weak_until {last})")), f"if play may end before `{end.text}`", True),
+            Asked(Answer("now", State(f"({a} until {last})")), f"if `{end.text}` must come", True),
+        ]
+
+    def never_until_after(self, state: State, duration: Duration, end: State) -> list[Asked] | None:
+        return self.until_after(state.negated(), duration, end)
+
     # Answers from the next step on.
+
+    def weak_next_lasting(self, duration: Duration, state: State) -> Asked:
+        return operated(f"weak_next always for {duration.text}", state)
 
     def next_lasting(self, state: State, duration: Duration) -> list[Asked]:
         lasting = f"always for {duration.text} {self.settled.get(state.text, state).at(ATOM)}"

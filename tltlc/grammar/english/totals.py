@@ -13,6 +13,8 @@ from tltlc.grammar.english.terminals import Term
 from tltlc.grammar.mistakes.sentences.states import AND, ATOM, OR, State, joined
 from tltlc.grammar.mistakes.sentences.vocabulary import NEGATED_SIGN
 
+_LONGEST_PLAY: Final = "10 min"
+"""The maximum of a time that is compared with the time of all of play."""
 _MOST_TOTAL: Final = 6
 """The most steps of a total of which a clause counts each."""
 
@@ -37,6 +39,43 @@ class Totals(Differences):
                 Reading((denied,), f"for that with `{state.negated().text}`"),
             ]
         return whole
+
+    def half_of_time(self) -> str:
+        return "0.5"
+
+    def quarter_of_time(self) -> str:
+        return "0.25"
+
+    def tenth_of_time(self) -> str:
+        return "0.1"
+
+    def times_time(self, number: Term, _: Term) -> str:
+        return number.text
+
+    def part_of_time(self, number: Term, unit: Term) -> str | None:
+        return f"{float(number.text) / 100:g}" if unit.text == "%" else None
+
+    def time_share(self, state: State, sign: str, share: str) -> list[Reading] | None:
+        """Return the rules of `hidden at least half of the time`: at the end of play, or at each step up to it."""
+        if state.level > AND or is_negative(state):
+            return None
+        total = f"total_time({without_brackets(state.text)}, {_LONGEST_PLAY})"
+        rule = f"{total} {sign} {share} * total_time(true, {_LONGEST_PLAY})"
+        longest = f"no play is longer than {_LONGEST_PLAY}"
+        return [
+            Reading((f"require eventually always {rule}",), f"if it counts when play ends, and {longest}"),
+            Reading((f"keep {rule}",), f"if it must be so at each step, and {longest}"),
+        ]
+
+    def total_share(self, total: Term, sign: str | Term, share: str) -> list[Reading] | None:
+        """Return the rules of `total_time(a) <= 20 % of the time`."""
+        name, _, inner = total.text.partition("(")
+        if name != "total_time" or "," in inner:
+            return None
+        return self.time_share(State(inner[:-1]), sign if isinstance(sign, str) else sign.text, share)
+
+    def avoid_time_share(self, state: State, sign: str, share: str) -> list[Reading] | None:
+        return self.time_share(state, NEGATED_SIGN[sign], share)
 
     def _in_seconds(self, duration: Duration) -> str:
         return f"{self.steps(duration) * self._step_s:.10g} s" if duration.is_steps else duration.text

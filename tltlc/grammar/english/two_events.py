@@ -2,14 +2,26 @@
 
 from __future__ import annotations
 
+from tltlc.core.record import record
+from tltlc.grammar.english.answers import Asked, is_negative
 from tltlc.grammar.english.events import Event, as_state
 from tltlc.grammar.english.intervals import is_edge
 from tltlc.grammar.english.quantities import Duration
 from tltlc.grammar.english.rules import Reading, Rules, When, are_simple, begun_text, not_again
 from tltlc.grammar.english.terminals import Term
+from tltlc.grammar.mistakes.sentences.answers import Answer
 from tltlc.grammar.mistakes.sentences.states import ATOM, OR, State, joined
 
 _Found = Reading | list[Reading] | None
+
+
+@record
+class Sequel:
+    """Two conditions, one after the other, and the time within which the second must come."""
+
+    first: State
+    second: State
+    duration: Duration
 
 
 class TwoEvents(Rules):
@@ -38,12 +50,16 @@ class TwoEvents(Rules):
             )
         )
 
+    def never_so_often(self, state: State, number: str) -> Reading | None:
+        """Return the rule of `a is never twice`, which allows it once."""
+        if is_negative(state) or state.level > ATOM or not number.isdecimal() or int(number) < 2:
+            return None
+        return Reading((f"keep times({state.text}) <= {int(number) - 1}",))
+
     def value_never_so_often(self, name: Term, value: Term, number: str) -> Reading | None:
         """Return the rule of `mode is never menu twice`."""
         state = self.enum(name, value)
-        if state is None or not number.isdecimal() or int(number) < 2:
-            return None
-        return Reading((f"keep times({state.text}) <= {int(number) - 1}",))
+        return None if state is None else self.never_so_often(state, number)
 
     def followed_before_next(self, first: State, answer: State, again: State) -> Reading | None:
         """Return the rule of `a is followed by b before the next a`."""
@@ -67,6 +83,102 @@ class TwoEvents(Rules):
                 f"keep ends {state.text} implies always for {pause.text} not {state.text}",
             )
         )
+
+    def held_before_event(self, state: State, duration: Duration, event: State) -> Reading | None:
+        """Return the rule of `a for at least 1 s before b`, up to the step before b begins."""
+        if duration.is_steps or not are_simple(state, event) or begun_text(state) == begun_text(event):
+            return None
+        held = f"previously time_holding({state.text}) >= {duration.text}"
+        return Reading((f"keep {begun_text(event)} implies {held}",))
+
+    def while_only_when(self, when: When, event: Event, state: State, condition: State) -> Reading | None:
+        """Return the rule of `while a, b only if c`."""
+        during = as_state(event)
+        if during is None or when in ("each", "after") or not are_simple(state):
+            return None
+        return Reading((f"keep {joined([during, state], 'and').at(OR)} implies {condition.at(OR)}",))
+
+    def when_exactly_one(
+        self, when: When, event: Event, number: Term, term: Term, duration: Duration
+    ) -> Reading | None:
+        """Return the rules of `after a, exactly one b within 1 s`: one comes, and no second one."""
+        start = as_state(event)
+        if start is None or not are_simple(start) or when == "while" or number.text != "1" or start.text == term.text:
+            return None
+        begun, name = begun_text(start), term.text
+        return Reading(
+            (
+                f"keep {begun} implies eventually within {duration.text} begins {name}",
+                f"keep once within {duration.text} {begun} implies times_since({name}, {begun}) <= 1",
+            )
+        )
+
+    def implied_exactly_one(self, event: Event, number: Term, term: Term, duration: Duration) -> Reading | None:
+        return self.when_exactly_one("when", event, number, term, duration)
+
+    def and_never(self, *states: State) -> list[Asked] | None:
+        """Return the answers of `b and never c`: no c up to that step, or from it on."""
+        *asked, never = states
+        if not are_simple(*asked, never) or is_negative(never) or never in asked:
+            return None
+        so_far = joined([*asked, State(f"not once {never.at(ATOM)}")], "and")
+        from_now = joined([*asked, State(f"always {never.negated().at(ATOM)}")], "and")
+        return [
+            Asked(Answer("now", so_far), f"if no `{never.text}` may have come up to that step"),
+            Asked(Answer("now", from_now), f"if no `{never.text}` may come from that step on", is_formula=True),
+        ]
+
+    def avoid_then(self, first: State, *rest: Duration | State) -> _Found:
+        """Return the rule of `avoid a then within 3 s b`, or `a again`, which must not begin once more."""
+        second = rest[-1]
+        assert isinstance(second, State)
+        time = rest[0] if isinstance(rest[0], Duration) else None
+        if not are_simple(first, second):
+            return None
+        if first == second and time is not None and "previous(" not in first.text:
+            return not_again(first, second, time.text)
+        between = "then" if time is None else f"then within {time.text}"
+        return Reading((f"avoid {_operand(first)} {between} {_operand(second)}",))
+
+    def none_since(self, term: Term, start: State) -> State:
+        """Return the condition of `no a since b`."""
+        return State(f"(not {term.text} since {start.at(ATOM)})")
+
+    # One after the other, after an event.
+
+    def sequence(self, first: State, second: State, duration: Duration) -> Sequel:
+        return Sequel(first, second, duration)
+
+    def sequence_behind(self, duration: Duration, first: State, second: State) -> Sequel:
+        return Sequel(first, second, duration)
+
+    def when_sequence(self, when: When, event: Event, sequel: Sequel, *exception: State) -> list[Reading] | None:
+        """Return the readings of `after a, b then c within 5 s unless d`: the time counts from a, or from b."""
+        start = as_state(event)
+        if start is None or not are_simple(start, sequel.first, sequel.second):
+            return None
+        begin = begun_text(start)
+        came = State(f"previously (not {begin} since {sequel.first.at(ATOM)})")
+        time, done = sequel.duration.text, joined([sequel.second, came], "and")
+        last = State(f"eventually within {time} {sequel.second.at(ATOM)}")
+        goal = joined([done, *exception], "or") if exception else done
+        from_second = joined([joined([sequel.first, last], "and"), *exception], "or")
+        return [
+            Reading(
+                (f"keep {begin} implies eventually within {time} {goal.at(ATOM)}",),
+                f"if the time counts from where `{start.text}` begins, anew from each",
+            ),
+            Reading(
+                (f"keep {begin} implies eventually {from_second.at(ATOM)}",),
+                f"if it counts from `{sequel.first.text}`",
+            ),
+        ]
+
+    def implied_sequence(self, event: Event, sequel: Sequel, *exception: State) -> list[Reading] | None:
+        return self.when_sequence("when", event, sequel, *exception)
+
+    def sequence_when(self, sequel: Sequel, when: When, event: Event) -> list[Reading] | None:
+        return self.when_sequence(when, event, sequel)
 
     # The time between them.
 
@@ -120,3 +232,8 @@ class TwoEvents(Rules):
 
     def elapsed_implied(self, event: Event, elapsed: State) -> Reading | None:
         return self.elapsed_at("when", event, elapsed)
+
+
+def _operand(state: State) -> str:
+    """Return a condition as an operand of `then`, in brackets unless it is a name."""
+    return state.text if state.text.isidentifier() else f"({state.text})"

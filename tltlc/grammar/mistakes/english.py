@@ -30,7 +30,14 @@ from tltlc.grammar.mistakes.english_rewrite import (
 from tltlc.grammar.mistakes.english_times import prefix_time_error, time_error
 from tltlc.grammar.mistakes.one_reading import TEMPORAL, UNCLEAR, has_token, is_clear_here, is_clear_word
 from tltlc.grammar.mistakes.parse_failure import INFIX, ParseFailure, outer_indices, quote_token
-from tltlc.grammar.mistakes.rephrasing import formula_start, formula_stop, operand_text, span_of, suggest_rewrite
+from tltlc.grammar.mistakes.rephrasing import (
+    formula_start,
+    formula_stop,
+    operand_text,
+    span_of,
+    suggest_rewrite,
+    text_of,
+)
 from tltlc.grammar.mistakes.rule_conditions import condition_behind_rule
 
 _FROM_THEN_ON: Final = {
@@ -92,15 +99,15 @@ def _without_error(failure: ParseFailure) -> Diagnostic:
 
     If the clause can have only one meaning, a fix writes `avoid` in place of `without`.
     """
-    help_ = "`avoid`, which begins a separate clause and applies to every step"
     at = failure.stop.index
     goals = goal_starts(failure, at)
     sides = ((goals[-1], at), (at + 1, formula_stop(failure)))
     is_clear = len(goals) == 1 and is_clear_word(failure, "without", *sides, clause_keyword(failure))
-    write = "avoid" if is_clear else None
-    return failure.error(
-        "TLT0101", failure.misplaced(failure.token), f"{'write' if is_clear else 'use'} {help_}", write=write
-    )
+    help_ = "use `avoid`, which begins a separate clause and applies to every step"
+    if is_clear:
+        clauses = text_of(failure, 0, at), f"avoid {text_of(failure, at + 1, formula_stop(failure))}"
+        help_ = f"write `{clauses[0]}` and `{clauses[1]}`, which applies to every step"
+    return failure.error("TLT0101", failure.misplaced(failure.token), help_, write="avoid" if is_clear else None)
 
 
 def _infix_word_error(failure: ParseFailure, forms: Forms) -> Diagnostic:

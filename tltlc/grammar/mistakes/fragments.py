@@ -34,6 +34,8 @@ _STARTS: Final = {
     "ALL",
     "ANY",
 }
+_BEFORE_VERBS: Final = ("must", "should", "shall", "will", "may", "can", "cannot", "to")
+"""Words before a verb: `coins must reach 50` is one clause."""
 _PREFIXES: Final = (_STARTS - {"NAME", "STRING"}) | {"WHEN"}
 """Tokens that can begin a formula but not continue one."""
 _OPENING_WORDS: Final = frozenset(
@@ -140,6 +142,8 @@ def _begins_piece(
     token, before = tokens[index], tokens[index - 1]
     first = is_first_on_line(source, tokens, index)
     if token.text in keywords and (token.type != "NAME" or keywords is TEST_ITEMS):
+        if not first and before.text in _BEFORE_VERBS:
+            return False
         if token.type == "ENTITY" and before.type == "COLON":
             return False
         if token.type == "LIMIT" and before.text == "at" and not (first and tokens[index - 2].type != "JUDGE"):
@@ -161,7 +165,8 @@ def _begins_piece(
     following = tokens[index + 1]
     if following.type == "COLON" and _is_like_keyword(token.text, keywords):
         return True
-    if following.text in keywords and following.type != "NAME" and before.type in _ENDS:
+    is_end = before.type in _ENDS or token.text in _BEFORE_VERBS
+    if following.text in keywords and following.type != "NAME" and is_end:
         return True
     if following.type not in _STARTS or following.text in load().soft or is_first_on_line(source, tokens, index + 1):
         return False

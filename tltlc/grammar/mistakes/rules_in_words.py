@@ -151,8 +151,11 @@ def _changed(failure: ParseFailure) -> Diagnostic | None:
     return _change_error(failure, start, at, at)
 
 
-def _change_error(failure: ParseFailure, start: int, stop: int, verb: int) -> Diagnostic:
-    """Return the error for a verb such as `falls`, and how far the value from ``start`` to ``stop`` changes."""
+def _change_error(failure: ParseFailure, start: int, stop: int, verb: int) -> Diagnostic | None:
+    """Return the error for a verb such as `falls`, and how far the value from ``start`` to ``stop`` changes.
+
+    None if no number ends the clause.
+    """
     tokens, operand = failure.tokens, operand_text(failure, start, stop)
     title = failure.misplaced(tokens[verb])
     if any(token.text in ("within", "in") for token in tokens[verb:]):
@@ -161,7 +164,9 @@ def _change_error(failure: ParseFailure, start: int, stop: int, verb: int) -> Di
     at = verb + 1 + (tokens[verb + 1].text == "by")
     phrase = phrase_at(tokens, at, COMPARISON_WORDS)
     number = tokens[at + len(phrase)]
-    compared = f" {COMPARISON_WORDS.get(phrase, '>=')} {number.text if number.type == 'NUMBER' else '10'}"
+    if number.type != "NUMBER" or at + len(phrase) + 2 < len(tokens):
+        return None
+    compared = f" {COMPARISON_WORDS.get(phrase, '>=')} {number.text}"
     clause = "avoid " if tokens[verb - 1].text == "never" else ""
     step, extreme = (f"{clause}{form.format(x=operand)}" for form in _CHANGES[tokens[verb].text])
     word = "highest" if "highest" in extreme else "lowest"

@@ -8,6 +8,7 @@ from typing import Final
 from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import Diagnostic, Fix, replacement_fix
 from tltlc.grammar.english.clauses import plain_text
+from tltlc.grammar.english.contradictions import forbids_its_event
 from tltlc.grammar.english.doubts import is_english_alone, takes_one_reading
 from tltlc.grammar.english.gaps import sentence_with_gaps
 from tltlc.grammar.english.notes import form_notes, notes, reading_notes
@@ -37,6 +38,8 @@ from tltlc.grammar.mistakes.sentences.vocabulary import DIRECTLY_AFTER, LASTING,
 from tltlc.grammar.mistakes.sentences.words import Words, phrases
 from tltlc.grammar.past_words import SYNONYMS
 
+_AND_NEVER: Final = phrases("and never", "but never")
+"""Words before what must not come up to a step, or from it on."""
 _ENGLISH_ALONE: Final = (
     *DIRECTLY_AFTER,
     *phrases(
@@ -56,6 +59,7 @@ _ENGLISH_ALONE: Final = (
         "again before",
         "is never",
         "is out",
+        "again",
         "is gone",
         "in first",
         "in the first",
@@ -208,8 +212,13 @@ def _may_miss(failure: ParseFailure, fix: Fix, words: Words) -> bool:
     is_compared = (" implies always " in text or " implies eventually within " in text) and "previous(" in text
     is_same = words.find(LASTING) is not None and keeps_values(text.partition(" implies ")[2])
     is_denied = " implies always for " in text and " not " in text and words.find(phrases("after")) is not None
+    is_never = words.find(_AND_NEVER) is not None and " and always not " in answer
     return (
         words.word(0) == "finish"
+        or is_never
+        or forbids_its_event((text,))
+        or " next after " in text
+        or (" or " in text.partition("time_holding(")[2].partition(") ")[0] and words.find(phrases("or")) is not None)
         or (words.find(_DENIED_TWICE) is not None and " and not " in text)
         or is_compared
         or is_counted

@@ -120,7 +120,7 @@ def _after(words: Words, first: Phrase) -> str | None:
     answer, condition = answer_of(words[start:]), condition_of(words[len(first) : border[0]])
     is_counted = answer is not None and COUNTED.intersection(answer.state.text.replace("(", " ").split())
     readings = None
-    if answer is not None and answer.kind == "now" and not is_counted:
+    if answer is not None and answer.kind == "now" and not is_counted and not answer.state.text.startswith("always "):
         readings = _help(_FROM_THEN, answer.state, condition)
     elif answer is not None and answer.kind == "eventually" and answer.keyword == "reach":
         readings = _help(_GOALS, answer.state, condition)
