@@ -118,3 +118,23 @@ def test_how_long_ago_a_value_is_must_be_some_steps(call: str, code: str, text: 
     error = first_error(f"{HEAD}spec s {{ keep x >= {call} - 5 }}")
     assert error.code == code
     assert text in (error.help or "")
+
+
+@pytest.mark.parametrize("argument", ["mode is idle", "(mode is idle)", "turn > 3", "x <= 2"])
+def test_a_formula_at_the_step_before_is_no_number(argument: str) -> None:
+    error = first_error(f"{HEAD}spec s {{ keep previous({argument}) implies a }}")
+    assert error.code == "TLT0302"
+    assert f"`previously ({argument.strip('()')})`" in (error.help or "")
+
+
+@pytest.mark.parametrize(
+    ("rule", "said"),
+    [
+        ("keep times(a then within 2 s (x > 3), 9) <= 2", "`(x > 3) and once within 2 s a`"),
+        ("keep once (a then mode is idle) implies a", "`(mode is idle) and previously once a`"),
+    ],
+)
+def test_a_sequence_in_the_past_is_told_at_its_last_step(rule: str, said: str) -> None:
+    error = first_error(f"{HEAD}spec s {{ {rule} }}")
+    assert error.code == "TLT0320"
+    assert said in (error.help or "")

@@ -15,7 +15,7 @@ from tltlc.core.source import Span
 from tltlc.diagnostics.diagnostic import Label
 from tltlc.expression.tree import Before, Condition, Const, Expression, Op, SignalValue, When, depth
 from tltlc.grammar.past_words import FUNCTIONS, MOST_STEPS_BACK, OF_EVENTS
-from tltlc.grammar.tree import BinaryExpr, CallExpr, Expr, GroupExpr, NameExpr, NumberExpr, Unary
+from tltlc.grammar.tree import BinaryExpr, CallExpr, Expr, GroupExpr, IsExpr, NameExpr, NumberExpr, Unary
 from tltlc.io.limits import ARITHMETIC
 from tltlc.logic import formula as logic
 from tltlc.logic.formula import Formula
@@ -390,6 +390,11 @@ def _of_number(expr: CallExpr, env: Env, level: int) -> Quantity:
     from tltlc.resolve.quantities import quantity
 
     argument = expr.arguments[0].value
+    inner = argument.inner if isinstance(argument, GroupExpr) else argument
+    is_compared = isinstance(inner, BinaryExpr) and inner.op in ("<", "<=", ">", ">=", "==", "!=")
+    if expr.name == "previous" and (isinstance(inner, IsExpr) or is_compared):
+        advice = f"write `previously ({env.scope.source.slice(inner.span)})` for a formula at the step before"
+        raise problem("TLT0302", "expected a number, found a formula", env.scope.source, argument.span, advice=advice)
     value = check_closed(quantity(argument, env, level), argument, env)
     event = _operand(expr.arguments[1].value, env) if expr.name in OF_EVENTS else None
     if value.is_constant:
