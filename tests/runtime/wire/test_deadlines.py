@@ -45,7 +45,9 @@ def test_the_connection_and_the_hello_of_a_running_game_share_a_deadline(monkeyp
 
 def test_the_connection_and_the_hello_of_a_godot_rl_game_share_a_deadline(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("tltl_runtime.wire.session.time", FastClock(2 * HANG_S))
-    with no_new_children(), pytest.raises(WireError, match="did not connect and answer `env_info` within 900 s"):
+    # The game may end because of the closed connection before its deadline is looked at.
+    late = "did not connect and answer `env_info` within 900 s|ended with exit status 0 before it answered `env_info`"
+    with no_new_children(), pytest.raises(WireError, match=late):
         WireEnv(test_godot_rl.player())
 
 
