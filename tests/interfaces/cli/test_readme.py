@@ -22,8 +22,9 @@ def test_the_spec_of_the_readme_is_right(tltlc, inside: Path) -> None:  # type: 
 
 def test_the_signals_in_the_text_of_the_readme_can_be_declared(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
     declared = re.findall(r"`(signal [^`]+)`", README)
-    assert len(declared) == 2
-    Path("signals.tltl").write_text("".join(f"{declaration}\n" for declaration in declared))
+    assert len(declared) == 3
+    rule = "spec s {\n    avoid phase is menu and coins > 3 and health > 50\n}\n"
+    Path("signals.tltl").write_text("".join(f"{declaration}\n" for declaration in declared) + rule)
     assert tltlc("check", "signals.tltl").status == 0
 
 
