@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from tests.grammar.sentences import read
+from tests.grammar.phrases_as_typed import errors
+from tests.grammar.sentences import read, spec
 
 Readings = list[tuple[str, ...]]
 FIRST = "if `boss_dead` counts only at the first step of that time"
@@ -244,6 +245,11 @@ OTHERS: dict[str, Readings] = {
         ("keep coins > previous(coins) implies previously time_holding(coins <= previous(coins)) >= 1 s", ""),
     ],
 }
+
+
+def test_a_help_leaves_no_part_of_a_condition_as_a_clause_of_its_own() -> None:
+    (error,) = errors(spec("keep fire and no spray for 2 s implies boss_dead"))
+    assert (error.help or "").startswith("write `keep fire and time_holding(not spray) >= 2 s implies boss_dead`")
 
 
 @pytest.mark.parametrize(("typed", "readings"), [*UNLESS.items(), *WHILE.items(), *OTHERS.items()])

@@ -237,7 +237,7 @@ def test_a_search_without_a_result_does_not_say_that_the_spec_cannot_be_met() ->
     signals = " ".join(f"signal {name}: bool" for name in "abc")
     (fspa,) = compiler.compile_text(f"clock 60 Hz {signals} spec s {{ reach {chain} }}")
     said = text(explain(fspa))
-    assert "A way to succeed\n  None was found. The search tries only so many steps, so this" in said
+    assert "A way to succeed\n  The search found none within its limit. There may still be one." in said
     assert "What breaks it\n  Nothing breaks it for good.\n" in said
 
 

@@ -19,7 +19,7 @@ from tltlc.grammar.english.quantities import (
     comparison,
     share_of,
 )
-from tltlc.grammar.english.rules import LASTING, Reading, Rules, When, begun_text
+from tltlc.grammar.english.rules import LASTING, Reading, Rules, When, all_readings, begun_text
 from tltlc.grammar.english.terminals import Term
 from tltlc.grammar.mistakes.declared_names import DeclaredNames
 from tltlc.grammar.mistakes.sentences.answers import Answer
@@ -382,7 +382,7 @@ def _all(states: list[State | None]) -> State | None:
 
 def _only(found: _Found) -> Reading | None:
     """Return the reading of a rule that has one."""
-    readings = found if isinstance(found, list) else [] if found is None else [found]
+    readings = all_readings(found)
     return readings[0] if len(readings) == 1 and not readings[0].condition else None
 
 

@@ -11,7 +11,7 @@ from tltlc.grammar.english.differences import Period
 from tltlc.grammar.english.events import Counted, Event, as_state
 from tltlc.grammar.english.intervals import Span, is_edge
 from tltlc.grammar.english.quantities import IT, Duration, begun, counted_by
-from tltlc.grammar.english.rules import Reading, When, begun_text
+from tltlc.grammar.english.rules import Reading, When, all_readings, begun_text
 from tltlc.grammar.english.terminals import Term
 from tltlc.grammar.english.totals import Totals, without_brackets
 from tltlc.grammar.mistakes.sentences.states import AND, ATOM, OR, State, joined
@@ -245,8 +245,8 @@ class Periods(Totals):
         """Return the rule of `every third a is followed by b`, which counts up to a last one."""
         numbers = range(int(number), _MOST_COUNTED + 1, int(number))
         counted = joined([State(f"times({term.text}) == {each}") for each in numbers], "or")
-        found = self.first("when", joined([State(f"begins {term.text}"), counted], "and"), answers)
-        readings = found if isinstance(found, list) else [] if found is None else [found]
+        event = joined([State(f"begins {term.text}"), counted], "and")
+        readings = all_readings(self.first("when", event, answers))
         last = f"up to number {numbers[-1]}: no clause counts for ever"
         return [replace(one, condition=" and ".join(filter(None, (one.condition, last)))) for one in readings]
 

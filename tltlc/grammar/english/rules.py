@@ -263,6 +263,13 @@ class Rules(Answers):
         return None
 
 
+def all_readings(rule: _Found) -> list[Reading]:
+    """Return what a rule may mean as a list: a rule has no reading, one, or several."""
+    if rule is None:
+        return []
+    return rule if isinstance(rule, list) else [rule]
+
+
 def are_simple(*states: State) -> bool:
     """Whether no condition is made of several: a word between them may belong to the nearest alone."""
     return all(state.level == ATOM and not state.text.startswith("not (") for state in states)

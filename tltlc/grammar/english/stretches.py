@@ -10,7 +10,7 @@ from tltlc.grammar.english.events import Counted, Event, Held, as_state
 from tltlc.grammar.english.intervals import Intervals
 from tltlc.grammar.english.orders import Orders
 from tltlc.grammar.english.quantities import Duration, Number, comparison
-from tltlc.grammar.english.rules import Goals, Reading, When, are_simple, begun_text, never_held
+from tltlc.grammar.english.rules import Goals, Reading, When, all_readings, are_simple, begun_text, never_held
 from tltlc.grammar.english.terminals import Term
 from tltlc.grammar.mistakes.sentences.answers import Answer
 from tltlc.grammar.mistakes.sentences.states import ATOM, OR, State, joined
@@ -271,7 +271,7 @@ def each_reading(goals: Sequence[tuple[State, str]], rule: Callable[[State], _Fo
     """Return the readings of a rule about each of several goals, which come with conditions."""
     readings: list[Reading] = []
     for goal, condition in goals:
-        found = rule(goal)
-        each = found if isinstance(found, list) else [found] if found is not None else []
-        readings += (replace(r, condition=" and ".join(filter(None, (condition, r.condition)))) for r in each)
+        for reading in all_readings(rule(goal)):
+            both = " and ".join(filter(None, (condition, reading.condition)))
+            readings.append(replace(reading, condition=both))
     return readings

@@ -9,7 +9,7 @@ from tltlc.grammar.english.answers import Asked, operated
 from tltlc.grammar.english.changes import Changes
 from tltlc.grammar.english.events import Event, Held, as_state, joined_events
 from tltlc.grammar.english.quantities import Duration
-from tltlc.grammar.english.rules import Reading, When, are_simple
+from tltlc.grammar.english.rules import Reading, When, all_readings, are_simple
 from tltlc.grammar.mistakes.sentences.answers import Answer
 from tltlc.grammar.mistakes.sentences.states import ATOM, OR, State, joined
 
@@ -46,7 +46,7 @@ class Tails(Changes):
         return self._each_last(self.answer_unless_then(answers[0], exception), when, event) if not answers[1:] else None
 
     def _each_last(self, excused: list[list[Asked]] | None, when: When, event: Event) -> list[Reading]:
-        return [one for answers in excused or [] for one in _readings(self.first(when, event, answers))]
+        return [one for answers in excused or [] for one in all_readings(self.first(when, event, answers))]
 
     def answer_unless_then(self, asked: Asked, event: Event) -> list[list[Asked]] | None:
         """Return the answer of `b within 5 s unless c comes first`."""
@@ -153,7 +153,7 @@ class Tails(Changes):
         return [
             replace(one, condition=", and ".join(filter(None, (where, one.condition.removeprefix("if ")))))
             for held, where in kinds
-            for one in _readings(rule(held))
+            for one in all_readings(rule(held))
         ]
 
     def _while(
@@ -163,20 +163,16 @@ class Tails(Changes):
         state, joint, asked = as_state(event), joined_events([event, condition], "and"), answers[0]
         if state is None or joint is None:
             return None
-        whole = _readings(rule(joint, answers))
+        whole = all_readings(rule(joint, answers))
         is_timed = asked.answer.kind in ("within", "lasting") or asked.denied is not None or asked.until is not None
         shorter = self.answer_unless_then(asked, condition.negated()) if is_timed and not answers[1:] else None
-        ended = _readings(rule(joint, shorter[0])) if shorter else []
+        ended = all_readings(rule(joint, shorter[0])) if shorter else []
         if len(whole) != 1 or len(ended) != 1 or whole[0].condition:
             return whole
         return [
             replace(whole[0], condition=f"if `{condition.text}` counts at the step of `{state.text}`"),
             replace(ended[0], condition=f"if nothing is asked for once `{condition.text}` is over"),
         ]
-
-
-def _readings(found: _Found) -> list[Reading]:
-    return [] if found is None else found if isinstance(found, list) else [found]
 
 
 def _both(state: State) -> tuple[str, str]:

@@ -26,7 +26,7 @@ _MOST_STEPS = 60
 _MOST_GOALS = 3
 """The most goals of a chain in a sentence."""
 
-_NOT_FOUND = "None was found. The search tries only so many steps, so this does not mean that there is none."
+_NOT_FOUND = "The search found none within its limit. There may still be one."
 
 
 @record

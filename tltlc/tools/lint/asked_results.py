@@ -43,6 +43,16 @@ class AskedResult:
         """Each `next` around the result, outer before inner, without those that are weak."""
         return [step for step in self.steps if isinstance(step.tree, Unary) and step.tree.op == "X"]
 
+    def is_all_of(self, clause: Clause, value: ScopedExpression) -> bool:
+        """Whether a `keep` clause with this formula asks for this part alone, so that a help can write it anew."""
+        rule = without_brackets(value.tree)
+        return (
+            clause.kind == "keep"
+            and isinstance(rule, BinaryExpr)
+            and without_brackets(rule.left) is self.condition.tree
+            and without_brackets(rule.right) is without_brackets(self.part.tree)
+        )
+
 
 def asked_results(clause: Clause, value: ScopedExpression) -> Iterator[AskedResult]:
     """Yield what a clause asks for at each step where the condition of an implication holds, in the order of the text.

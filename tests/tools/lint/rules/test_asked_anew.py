@@ -38,6 +38,12 @@ def test_an_answer_beside_an_excuse_gets_a_finding() -> None:
     assert f"write `{offered}`" in (finding.help or "")
 
 
+def test_the_help_keeps_what_else_the_rule_asks_for() -> None:
+    text = block("keep times(a) >= 2 implies (eventually b) and c", before=BEFORE)
+    (finding,) = (item.diagnostic for item in findings_in(text) if item.diagnostic.code == "TLT0463")
+    assert "write `begins (times(a) >= 2) implies eventually b`" in (finding.help or "")
+
+
 def test_the_help_asks_once() -> None:
     typed, once = (
         accepted_traces(block(f"keep {rule}", before=BEFORE), "abc", 3)

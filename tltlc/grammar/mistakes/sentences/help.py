@@ -202,7 +202,7 @@ def _may_miss(failure: ParseFailure, fix: Fix, words: Words) -> bool:
     It compares a value with that of the step before from some step on, or while something holds, and the first such
     step may not be meant. Or it says how long something lasts `unless` something else comes, which may also end that
     time, or `after` something, which may itself last. Or it counts what comes before the condition of its rule, too,
-    or leaves a condition out of what it counts. Or it asks for a step of what play must finish with.
+    or leaves a condition out of what it counts, or of its rule. Or it asks for a step of what play must finish with.
     """
     text = mended(failure, fix)
     answer = text.partition(" implies ")[2]
@@ -217,6 +217,7 @@ def _may_miss(failure: ParseFailure, fix: Fix, words: Words) -> bool:
         words.word(0) == "finish"
         or is_never
         or forbids_its_event((text,))
+        or ("\n" in text and " implies " not in text.partition("\n")[0] and words.find(phrases("implies")) is not None)
         or " next after " in text
         or (" or " in text.partition("time_holding(")[2].partition(") ")[0] and words.find(phrases("or")) is not None)
         or (words.find(_DENIED_TWICE) is not None and " and not " in text)

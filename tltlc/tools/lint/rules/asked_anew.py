@@ -33,9 +33,7 @@ def check(view: FileView) -> Iterator[RuleFinding]:
         for clause, value in spec.clauses("keep", "require"):
             for asked in asked_results(clause, value):
                 if _may_wait(asked) and _lasts(asked, view):
-                    rule = without_brackets(value.tree)
-                    is_whole = isinstance(rule, BinaryExpr) and without_brackets(rule.left) is asked.condition.tree
-                    yield _finding(asked, "keep " if clause.kind == "keep" and is_whole else "")
+                    yield _finding(asked, "keep " if asked.is_all_of(clause, value) else "")
 
 
 def _may_wait(asked: AskedResult) -> bool:

@@ -24,17 +24,10 @@ def check(view: FileView) -> Iterator[RuleFinding]:
     """
     for spec in view.specs:
         for clause, value in spec.clauses("keep", "require"):
-            rule = without_brackets(value.tree)
             for asked in asked_results(clause, value):
                 state = _state(asked)
                 if state is not None and not asked.steps and _compares_with_step_before(asked.part):
-                    is_whole = (
-                        clause.kind == "keep"
-                        and isinstance(rule, BinaryExpr)
-                        and without_brackets(rule.left) is asked.condition.tree
-                        and without_brackets(rule.right) is without_brackets(asked.part.tree)
-                    )
-                    yield _finding(asked, state, is_whole=is_whole)
+                    yield _finding(asked, state, is_whole=asked.is_all_of(clause, value))
 
 
 def _state(asked: AskedResult) -> ScopedExpression | None:

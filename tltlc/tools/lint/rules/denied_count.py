@@ -23,12 +23,10 @@ def check(view: FileView) -> Iterator[RuleFinding]:
     """
     for spec in view.specs:
         for clause, value in spec.clauses("keep", "require"):
-            rule = without_brackets(value.tree)
             for asked in asked_results(clause, value):
                 event = None if asked.steps else _counted(asked.condition, view)
                 if event is not None and _denied(asked.part) in (event.text, operand_text(event)):
-                    is_whole = isinstance(rule, BinaryExpr) and without_brackets(rule.left) is asked.condition.tree
-                    yield _finding(asked, event, "keep " if clause.kind == "keep" and is_whole else "")
+                    yield _finding(asked, event, "keep " if asked.is_all_of(clause, value) else "")
 
 
 def _counted(condition: ScopedExpression, view: FileView) -> ScopedExpression | None:

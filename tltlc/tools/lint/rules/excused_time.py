@@ -48,13 +48,7 @@ def _findings(asked: AskedResult, clause: Clause, value: ScopedExpression, spec:
         formulas = [part.formula() for part in (state, condition, *others)]
         known = [formula for formula in formulas if formula is not None and is_state(formula)]
         if len(known) == len(formulas) and _may_end(known[0], known[2:], spec):
-            rule = without_brackets(value.tree)
-            is_whole = (
-                clause.kind == "keep"
-                and isinstance(rule, BinaryExpr)
-                and without_brackets(rule.left) is condition.tree
-                and without_brackets(rule.right) is without_brackets(asked.part.tree)
-            )
+            is_whole = asked.is_all_of(clause, value)
             yield _finding(asked, asked.part.with_tree(time), others, is_whole=is_whole)
 
 

@@ -33,16 +33,10 @@ def check(view: FileView) -> Iterator[RuleFinding]:
     """
     for spec in view.specs:
         for clause, value in spec.clauses("keep", "require"):
-            rule = without_brackets(value.tree)
             for asked in asked_results(clause, value):
                 condition = asked.condition.tree
                 if not asked.steps and _is_change(asked.part, condition) and not has_step_before(condition):
-                    is_whole = (
-                        isinstance(rule, BinaryExpr)
-                        and without_brackets(rule.left) is condition
-                        and without_brackets(rule.right) is without_brackets(asked.part.tree)
-                    )
-                    yield _finding(asked, "keep " if clause.kind == "keep" and is_whole else "")
+                    yield _finding(asked, "keep " if asked.is_all_of(clause, value) else "")
 
 
 def _is_change(answer: ScopedExpression, condition: Expr) -> bool:

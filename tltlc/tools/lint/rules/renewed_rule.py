@@ -19,13 +19,7 @@ def check(view: FileView) -> Iterator[RuleFinding]:
                 past, until = asked.condition.tree, asked.part.tree
                 is_past = isinstance(past, Unary) and past.op == "once" and past.bound is None
                 if is_past and isinstance(until, BinaryExpr) and until.op in ("U", "W") and not asked.steps:
-                    rule = without_brackets(value.tree)
-                    is_whole = (
-                        isinstance(rule, BinaryExpr)
-                        and without_brackets(rule.left) is past
-                        and without_brackets(rule.right) is until
-                    )
-                    yield _finding(asked, "keep " if clause.kind == "keep" and is_whole else "")
+                    yield _finding(asked, "keep " if asked.is_all_of(clause, value) else "")
 
 
 def _finding(asked: AskedResult, keyword: str) -> RuleFinding:
