@@ -41,7 +41,7 @@ def fixed(text: str, diagnostic: Diagnostic) -> str:
         ("p since X q", "TLT0320"),
         ("previously eventually within 3 steps p", "TLT0320"),
         ("times(G p) > 3", "TLT0320"),
-        ("hp + times(p) > 3", "TLT0321"),
+        ("hp - times(p) > 3", "TLT0321"),
         ("-time_since(p) > -3 s", "TLT0321"),
         ("times(p) > times(q)", "TLT0321"),
         ("highest(times(p)) > 3", "TLT0321"),

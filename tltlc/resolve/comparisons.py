@@ -17,6 +17,7 @@ from tltlc.resolve.margins import robustness
 from tltlc.resolve.problem import ResolutionError, problem
 from tltlc.resolve.quantities import check_steps, quantity
 from tltlc.resolve.recall import check_closed, check_closed_pair, saturate, too_small_error
+from tltlc.resolve.sums import sides
 from tltlc.resolve.values import PRODUCT, Env, Quantity, apply, range_text
 
 _MIRRORED = {"<": ">", "<=": ">=", ">": "<", ">=": "<="}
@@ -41,7 +42,7 @@ def comparison(expr: BinaryExpr, env: Env) -> Formula:
     levels = env.context.levels
     check_steps(expr.left, expr.right, env)
     check_steps(expr.right, expr.left, env)
-    left, right = quantity(expr.left, env, levels), quantity(expr.right, env, levels)
+    left, right = sides(expr, env, levels)
     same_dimension(left, right, expr.right, env)
     left, right = saturate(left, right, expr.right, env), saturate(right, left, expr.left, env)
     check_closed_pair(left, right, expr, env)

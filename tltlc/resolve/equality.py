@@ -24,6 +24,7 @@ from tltlc.resolve.problem import ResolutionError, problem
 from tltlc.resolve.quantities import quantity
 from tltlc.resolve.recall import check_closed, check_closed_pair, saturate, too_small_error
 from tltlc.resolve.registers import COUNTS
+from tltlc.resolve.sums import sides
 from tltlc.resolve.values import PRODUCT, Env, Quantity, apply, constant, number_text, range_text
 
 EQUALITIES = ("==", "!=")
@@ -68,7 +69,7 @@ def distance_of_sides(expr: BinaryExpr, env: Env) -> tuple[Quantity, Quantity, Q
             raise equality_error(expr, side, info, other, env)
         if not _may_be_number(side, env):
             raise ResolutionError(misused_operator(env.scope.source, expr.op_span))
-    left, right = quantity(expr.left, env), quantity(expr.right, env)
+    left, right = sides(expr, env)
     same_dimension(left, right, expr.right, env)
     for time, other in ((left, expr.right), (right, expr.left)):
         if time.recall is not None and not time.recall.is_count:

@@ -218,6 +218,7 @@ def _infix(expr: tree.BinaryExpr, env: Env, depth: int) -> Quantity:
         return _apply_operator("/", (left, per), units.product(left.dimension, dimension, -1.0), expr, env)
     _check_speed(expr, env)
     right = quantity(expr.right, env, depth)
+    left, right = check_closed(left, expr.left, env), check_closed(right, expr.right, env)
     if expr.op in ("+", "-"):
         return _apply_operator(expr.op, (left, right), same_dimension(left, right, expr.right, env), expr, env)
     if expr.op == "^":

@@ -8,7 +8,7 @@ from typing import Final
 from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import Label, replacement_fix
 from tltlc.expression.tree import Const, Expression, Op
-from tltlc.grammar.tree import BinaryExpr, Expr
+from tltlc.grammar.tree import BinaryExpr, CallExpr, Expr
 from tltlc.resolve import registers, units
 from tltlc.resolve.counts_within import MOST_BEGINNINGS
 from tltlc.resolve.problem import ResolutionError, problem
@@ -32,6 +32,8 @@ def up_to(
     if read.window is not None and maximum > MOST_BEGINNINGS:
         title = f"`{value.text}` would need a maximum above {MOST_BEGINNINGS}"
         advice = f"compare it with less than {MOST_BEGINNINGS // 2}, or let the game count and supply the number"
+        if limit is not None:
+            advice = f"write a maximum of at most {MOST_BEGINNINGS}, or let the game count and supply the number"
         raise problem("TLT0303", title, env.scope.source, expr.span, advice=advice)
     if maximum > MOST_STEPS * float(read.unit):
         most = number_text(MOST_STEPS * float(read.unit)) + ("" if read.is_count else " s")
@@ -83,7 +85,7 @@ def check_closed(value: Quantity, expr: Expr, env: Env) -> Quantity:
     if value.recall.most is not None:
         return up_to(value, value.recall.most, expr, env)
     stops = f"{'counting' if value.recall.is_count else 'the time'} stops at the maximum"
-    written = f"`{_closed_text(value, env)}`"
+    written = f"`{_closed_text(value, env, expr)}`"
     advice = f"write the greatest value that matters, e.g. {written}: {stops}"
     if not value.recall.is_count and env.context.limit_text:
         advice = f"write {written}, with the limit of the spec, or a longer time: {stops}"
@@ -94,7 +96,7 @@ def check_closed_pair(left: Quantity, right: Quantity, expr: BinaryExpr, env: En
     """Raise ResolutionError (TLT0321) if both sides of a comparison are recalled and have no maximum."""
     if env.symbolic or not (is_open(left) and is_open(right)):
         return
-    text = f"{_closed_text(left, env)} {expr.op} {_closed_text(right, env)}"
+    text = f"{_closed_text(left, env, expr.left)} {expr.op} {_closed_text(right, env, expr.right)}"
     advice = (
         f"write the greatest value that one play can reach on both sides, e.g. `{text}`: from there on, both stay at "
         "it, and no difference is seen"
@@ -102,10 +104,15 @@ def check_closed_pair(left: Quantity, right: Quantity, expr: BinaryExpr, env: En
     raise _open_error(left, expr.left, env, advice)
 
 
-def _closed_text(value: Quantity, env: Env) -> str:
+def _closed_text(value: Quantity, env: Env, expr: Expr) -> str:
     """Return the text of a recalled quantity with a maximum: the limit of the spec for a time, else an example."""
-    example = "1000" if value.recall is not None and value.recall.is_count else env.context.limit_text or "60 s"
-    return f"{value.text[:-1]}, {example})"
+    assert value.recall is not None, "an open quantity"
+    example = env.context.limit_text or "60 s"
+    if value.recall.is_count:
+        example = "1000" if value.recall.window is None else str(MOST_BEGINNINGS)
+    is_own = isinstance(expr, CallExpr) and expr.name == value.text.partition("(")[0]
+    text = " ".join(env.scope.source.slice(expr.span).split()) if is_own else value.text
+    return f"{text[:-1]}, {example})"
 
 
 def _open_error(value: Quantity, expr: Expr, env: Env, advice: str) -> ResolutionError:
@@ -115,7 +122,7 @@ def _open_error(value: Quantity, expr: Expr, env: Env, advice: str) -> Resolutio
         f"`{value.text}` needs a maximum here",
         env.scope.source,
         expr.span,
-        "only a comparison with a number finds one by itself",
+        "only a comparison of it, or of a sum, with a number finds one by itself",
         advice=advice,
     )
 

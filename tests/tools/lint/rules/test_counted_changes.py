@@ -21,7 +21,14 @@ def test_a_count_of_one_event_or_another_gets_a_finding(count: str, sum_of_count
     text = block(f"keep {count} <= 2", before=BEFORE)
     (finding,) = (item.diagnostic for item in findings_in(text) if item.diagnostic.code == "TLT0465")
     assert finding.severity == "note"
-    assert f"`{sum_of_counts}`" in (finding.help or "")
+    assert f"write `keep {sum_of_counts} <= 2`;" in (finding.help or "")
+    assert "TLT0465" not in codes(block(f"keep {sum_of_counts} <= 2", before=BEFORE))
+
+
+def test_a_count_in_arithmetic_gets_its_sum_in_brackets() -> None:
+    text = block("keep 2 * times(begins a or ends a, 9) <= 4", before=BEFORE)
+    (finding,) = (item.diagnostic for item in findings_in(text) if item.diagnostic.code == "TLT0465")
+    assert "write `(times(begins a, 9) + times(ends a, 9))`, with a maximum in each" in (finding.help or "")
 
 
 @pytest.mark.parametrize(

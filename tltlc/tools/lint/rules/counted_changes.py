@@ -6,11 +6,12 @@ from collections.abc import Iterator
 from typing import Final
 
 from tltlc.diagnostics.diagnostic import Label
-from tltlc.grammar.tree import BinaryExpr, CallExpr, Unary
+from tltlc.grammar.tree import BinaryExpr, CallExpr, Expr, Unary
 from tltlc.grammar.walk import operands
-from tltlc.tools.lint.file_view import FileView, ScopedExpression, without_brackets
+from tltlc.tools.lint.file_view import FileView, ScopedExpression, edited_text, without_brackets
 from tltlc.tools.lint.rule import LintRule, RuleFinding
 
+_COMPARISONS: Final = ("<", "<=", ">", ">=", "==", "!=")
 _COUNTS: Final = ("times", "times_since", "times_within")
 
 
@@ -20,7 +21,9 @@ def check(view: FileView) -> Iterator[RuleFinding]:
     Each of them is over at the next step, but the other one may be there: then the count does not rise.
     """
     for spec in view.specs:
-        for _, value in spec.clauses("reach", "keep", "avoid", "require"):
+        for clause, value in spec.clauses("reach", "keep", "avoid", "require"):
+            keyword = f"{clause.kind} " if spec.declaration.block else ""
+            compared = {id(side) for side in _sides(value)}
             for part in value.parts():
                 call = part.tree
                 if isinstance(call, CallExpr) and call.name in _COUNTS and call.name not in view.env.scope.names:
@@ -28,17 +31,31 @@ def check(view: FileView) -> Iterator[RuleFinding]:
                     if isinstance(counted.tree, BinaryExpr) and counted.tree.op == "or":
                         kinds = [counted.with_tree(without_brackets(side)) for side in operands(counted.tree, "or")]
                         if all(isinstance(kind.tree, Unary) and kind.tree.op in ("begins", "ends") for kind in kinds):
-                            yield _finding(part, kinds)
+                            yield _finding(part, kinds, value if id(call) in compared else None, keyword)
 
 
-def _finding(count: ScopedExpression, kinds: list[ScopedExpression]) -> RuleFinding:
+def _sides(value: ScopedExpression) -> Iterator[Expr]:
+    """Yield the sides of the comparisons in a clause, without their brackets."""
+    for part in value.parts():
+        if isinstance(part.tree, BinaryExpr) and part.tree.op in _COMPARISONS:
+            yield from (without_brackets(part.tree.left), without_brackets(part.tree.right))
+
+
+def _finding(
+    count: ScopedExpression, kinds: list[ScopedExpression], whole: ScopedExpression | None, keyword: str
+) -> RuleFinding:
+    """Return the finding for a count, with its whole clause if a side of a comparison is that count."""
     assert isinstance(count.tree, CallExpr)
     others = [count.with_tree(argument.value).text for argument in count.tree.arguments[1:]]
     calls = [f"{count.tree.name}({', '.join((kind.text, *others))})" for kind in kinds]
     label = Label(count.source, count.tree.span, "if they take turns at each step, this counts only the first")
+    total = " + ".join(calls)
+    offered = f"`({total})`, with a maximum in each"
+    if whole is not None:
+        offered = f"`{keyword}{edited_text(whole, count.tree.span, total)}`"
     help_ = (
-        f"to count each of them, write `{' + '.join(calls)}`, with a maximum in each; if there is always a step "
-        "between them, allow this with the comment `// tltlc: allow TLT0465`"
+        f"to count each of them, write {offered}; if there is always a step between them, allow this with the comment "
+        "`// tltlc: allow TLT0465`"
     )
     return RuleFinding("events at steps in a row count once", (label,), help_)
 
