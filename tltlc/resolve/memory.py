@@ -12,10 +12,20 @@ from typing import Final
 
 from tltlc.core.record import replace
 from tltlc.core.source import Span
-from tltlc.diagnostics.diagnostic import Label
+from tltlc.diagnostics.diagnostic import Fix, Label, replacement_fix
 from tltlc.expression.tree import Before, Condition, Const, Expression, Op, SignalValue, When, depth
 from tltlc.grammar.past_words import FUNCTIONS, MOST_STEPS_BACK, OF_EVENTS
-from tltlc.grammar.tree import BinaryExpr, CallExpr, Expr, GroupExpr, IsExpr, NameExpr, NumberExpr, Unary
+from tltlc.grammar.tree import (
+    BinaryExpr,
+    CallExpr,
+    Expr,
+    GroupExpr,
+    IsExpr,
+    NameExpr,
+    NumberExpr,
+    TemporalInterval,
+    Unary,
+)
 from tltlc.io.limits import ARITHMETIC
 from tltlc.logic import formula as logic
 from tltlc.logic.formula import Formula
@@ -124,34 +134,53 @@ def _window(expr: Unary, operand: Formula, env: Env) -> Formula:
     return _atom(name, value, expr.span, env)
 
 
-def _looking_back(expr: Expr, env: Env) -> str:
-    """Return a help for `a then b`: the same, said at the step of b; "" for other formulas."""
+def _looking_back(expr: Expr, env: Env) -> Fix | None:
+    """Return the fix for `a then b then c`: the same, said at the step of c; None for other formulas."""
     while isinstance(expr, GroupExpr):
         expr = expr.inner
     if not isinstance(expr, BinaryExpr) or expr.op != "then":
-        return ""
-    first, second = (
-        text if isinstance(side, (NameExpr, GroupExpr)) else f"({text})"
-        for side in (expr.left, expr.right)
-        for text in (env.scope.source.slice(side.span),)
-    )
-    if expr.bound is None:
-        return f"at the step of the second, it is `{second} and previously once {first}`"
-    time = env.scope.source.slice(expr.bound.high.span)
-    return f"at the step of the second, it is `{second} and once within {time} {first}`"
+        return None
+    said, rest = _operand_text(expr.left, env), expr
+    while True:
+        later = rest.right.left if isinstance(rest.right, BinaryExpr) and rest.right.op == "then" else rest.right
+        said = f"{_operand_text(later, env)} and {_earlier(rest.bound, env)} {said}"
+        if later is rest.right:
+            break
+        assert isinstance(rest.right, BinaryExpr)
+        said, rest = f"({said})", rest.right
+    return replacement_fix(env.scope.source, expr.span, said)
+
+
+def _operand_text(expr: Expr, env: Env) -> str:
+    text = " ".join(env.scope.source.slice(expr.span).split())
+    return text if isinstance(expr, (NameExpr, GroupExpr)) else f"({text})"
+
+
+def _earlier(bound: TemporalInterval | None, env: Env) -> str:
+    """Return the operators that say at a later step of `then` that the formula before it has held in time."""
+    if bound is None:
+        return "previously once"
+    if env.context.clock_varies:
+        return f"once within {env.scope.source.slice(bound.high.span)}"
+    steps = samples(bound.high, env)
+    return f"previously once within {steps - 1} steps" if steps > 1 else "previously"
 
 
 def _check_operand(operand: Formula, expr: Expr, env: Env) -> None:
     """Check the operand of an operator or function of the past, before a name is made of its text."""
     if any(part.is_temporal for part in operand.walk()):
-        ended = _looking_back(expr, env)
+        fix = _looking_back(expr, env)
+        advice = "let operators such as `eventually` and `until` stand outside, as in `eventually once p`"
+        if fix is not None:
+            advice = f"write `{fix.edits[0].text}`, which looks back from the last of them"
         raise problem(
             "TLT0320",
             "a formula about the trace so far cannot contain an operator about the future",
             env.scope.source,
             expr.span,
             "this speaks of what is still to come",
-            advice=ended or "let operators such as `eventually` and `until` stand outside, as in `eventually once p`",
+            advice=advice,
+            fixes=() if fix is None else (fix,),
         )
     letters: dict[Formula, int] = {}
     for part in operand.bottom_up():
