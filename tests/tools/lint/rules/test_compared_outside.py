@@ -21,6 +21,11 @@ BEFORE = f"clock 1 Hz\n{RANGES}signal n: int in [0, 9]\nsignal mode: (walk, run)
             "keep a and mode is not run and previously mode is not run implies previous(x) + 0.25 >= x",
         ),
         ("keep mode is run implies (a and n == previous(n))", "and previously mode is run"),
+        ("keep a implies n <= previous(n)", "keep a and previously a implies n <= previous(n)"),
+        (
+            "keep not a implies n <= previous(n) or b",
+            "keep not a and previously not a implies n <= previous(n) or b",
+        ),
     ],
 )
 def test_a_rule_about_a_state_gets_a_note(clause: str, offered: str) -> None:
@@ -36,7 +41,6 @@ def test_a_rule_about_a_state_gets_a_note(clause: str, offered: str) -> None:
     [
         "keep mode is run and previously mode is run implies n <= previous(n)",
         "keep begins mode is run implies n <= 3",
-        "keep a implies n <= previous(n)",
         "keep mode is run implies n <= previous(n, 2 s)",
         "keep mode is run implies n > previous(n)",
         "keep n <= previous(n)",

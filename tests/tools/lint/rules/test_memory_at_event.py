@@ -15,6 +15,7 @@ from tltlc.pipeline import compile_text
         ("keep a implies times_since(b, a) >= 2", "previously (times_since(b, a) >= 2)"),
         ("keep a and c implies times_since(b, a) == 0", "previously (times_since(b, a) == 0)"),
         ("keep begins a implies times_since(b, begins a) < 2", "previously (times_since(b, begins a) < 2)"),
+        ("keep begins a implies times_since(b, a) >= 2", "previously (times_since(b, a) >= 2)"),
         ("require always (a implies (c and times_since(b, (a)) > 1))", "previously (times_since(b, (a)) > 1)"),
         ("keep a implies x > lowest_since(x, a) + 1", "previous(lowest_since(x, a))"),
         ("keep a implies x > value_at(x, a) - 1", "previous(value_at(x, a))"),

@@ -1,4 +1,4 @@
-"""TLT0474: `keep mode is queue implies place <= previous(place)`, which also compares with a step in another mode."""
+"""TLT0474: `keep mode is queue implies place <= previous(place)`, which also compares with a step before that mode."""
 
 from __future__ import annotations
 
@@ -6,8 +6,9 @@ from collections.abc import Iterator
 from typing import Final
 
 from tltlc.diagnostics.diagnostic import Label
-from tltlc.grammar.tree import BinaryExpr, CallExpr, Expr, IsExpr
-from tltlc.grammar.walk import conjuncts
+from tltlc.grammar.tree import BinaryExpr, CallExpr, Expr, IsExpr, NameExpr, Unary
+from tltlc.grammar.walk import conjuncts, operands
+from tltlc.resolve.scope import MEMORY_FUNCTIONS
 from tltlc.tools.lint.asked_results import AskedResult, asked_results
 from tltlc.tools.lint.file_view import FileView, ScopedExpression, without_brackets
 from tltlc.tools.lint.rule import LintRule, RuleFinding
@@ -17,9 +18,9 @@ _KEPT: Final = ("<=", ">=", "==")
 
 
 def check(view: FileView) -> Iterator[RuleFinding]:
-    """Yield a finding for each rule about steps with a value of an enum that compares a number with the step before.
+    """Yield a finding for each rule about steps with a state that compares a number with the step before.
 
-    At the first step with the value, the step before has another. There is none if the condition is about the step
+    A state is the value of an enum, or a name. At its first step, the step before is without it. There is none if the condition is about the step
     before, too, nor for `<`, `>` and `!=`, which ask for a change.
     """
     for spec in view.specs:
@@ -31,19 +32,29 @@ def check(view: FileView) -> Iterator[RuleFinding]:
 
 
 def _state(asked: AskedResult) -> ScopedExpression | None:
-    """Return the test of an enum in the condition of a rule; None if there is none, or it is about earlier steps."""
+    """Return the test of an enum or a name in the condition of a rule; None if it is about earlier steps."""
     if has_step_before(asked.condition.tree):
         return None
-    tests = (without_brackets(tree) for tree in conjuncts(asked.condition.tree))
-    return next((asked.condition.with_tree(tree) for tree in tests if isinstance(tree, IsExpr)), None)
+    tests = [without_brackets(tree) for tree in conjuncts(asked.condition.tree)]
+    known = [tree for tree in tests if isinstance(tree, IsExpr)] or [tree for tree in tests if _is_named(tree)]
+    return asked.condition.with_tree(known[0]) if known else None
+
+
+def _is_named(tree: Expr) -> bool:
+    """Whether a condition is a name, or the negation of one."""
+    inner = without_brackets(tree.operand) if isinstance(tree, Unary) and tree.op == "not" else tree
+    return isinstance(inner, NameExpr) or (isinstance(inner, CallExpr) and inner.name not in MEMORY_FUNCTIONS)
 
 
 def _compares_with_step_before(answer: ScopedExpression) -> bool:
-    tree = without_brackets(answer.tree)
-    if not isinstance(tree, BinaryExpr) or tree.op not in _KEPT:
-        return False
-    sides = [without_brackets(tree.left), without_brackets(tree.right)]
-    return any(_is_before(moved(other)[0], one, answer) for one, other in (sides, sides[::-1]))
+    """Whether an answer, or one of several that are joined by `or`, keeps a number where it was a step before."""
+    for part in operands(answer.tree, "or", through_brackets=True):
+        tree = without_brackets(part)
+        if isinstance(tree, BinaryExpr) and tree.op in _KEPT:
+            sides = [without_brackets(tree.left), without_brackets(tree.right)]
+            if any(_is_before(moved(other)[0], one, answer) for one, other in (sides, sides[::-1])):
+                return True
+    return False
 
 
 def _is_before(call: Expr, number: Expr, answer: ScopedExpression) -> bool:

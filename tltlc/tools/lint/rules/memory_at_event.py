@@ -27,7 +27,8 @@ def _findings(asked: AskedResult, view: FileView) -> Iterator[RuleFinding]:
     if not asked.part.depends_on_one_step():
         return
     conditions = [asked.condition.with_tree(part) for part in conjuncts(asked.condition.tree)]
-    formulas = [condition.formula() for condition in conditions]
+    begun = [part.children()[0] for part in conditions if _is_beginning(part)]
+    formulas = [condition.formula() for condition in (*conditions, *begun)]
     for part in _present_parts(asked.part):
         call = part.tree
         if not isinstance(call, CallExpr) or call.name not in OF_EVENTS or call.name in view.env.scope.names:
@@ -36,6 +37,10 @@ def _findings(asked: AskedResult, view: FileView) -> Iterator[RuleFinding]:
         formula = event.formula()
         if formula is not None and formula in formulas:
             yield _finding(part, event, asked, view)
+
+
+def _is_beginning(condition: ScopedExpression) -> bool:
+    return isinstance(condition.tree, Unary) and condition.tree.op == "begins"
 
 
 def _present_parts(asked: ScopedExpression) -> Iterator[ScopedExpression]:
