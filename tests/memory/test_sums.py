@@ -18,9 +18,7 @@ SIGNS = {"<": lt, "<=": le, ">": gt, ">=": ge, "==": eq, "!=": ne}
 def begun(trace: list[tuple[bool, bool, int]], which: int, last: int | None = None) -> int:
     """Return how often a signal has begun in a trace, or at its last step and the ``last`` before it."""
     first = 0 if last is None else max(0, len(trace) - 1 - last)
-    return sum(
-        bool(trace[at][which]) and not (at and trace[at - 1][which]) for at in range(first, len(trace))
-    )
+    return sum(bool(trace[at][which]) and not (at and trace[at - 1][which]) for at in range(first, len(trace)))
 
 
 @pytest.mark.parametrize("sign", SIGNS)

@@ -15,7 +15,7 @@ from tltlc.resolve import units
 from tltlc.resolve.dimensions import same_dimension
 from tltlc.resolve.margins import robustness
 from tltlc.resolve.problem import ResolutionError, problem
-from tltlc.resolve.quantities import check_steps, quantity
+from tltlc.resolve.quantities import check_steps
 from tltlc.resolve.recall import check_closed, check_closed_pair, saturate, too_small_error
 from tltlc.resolve.sums import sides
 from tltlc.resolve.values import PRODUCT, Env, Quantity, apply, range_text

@@ -21,7 +21,6 @@ from tltlc.resolve.enums import enum_of, equality_error
 from tltlc.resolve.kinds import kind_of
 from tltlc.resolve.margins import robustness
 from tltlc.resolve.problem import ResolutionError, problem
-from tltlc.resolve.quantities import quantity
 from tltlc.resolve.recall import check_closed, check_closed_pair, saturate, too_small_error
 from tltlc.resolve.registers import COUNTS
 from tltlc.resolve.sums import sides

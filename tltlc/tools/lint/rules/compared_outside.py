@@ -20,8 +20,8 @@ _KEPT: Final = ("<=", ">=", "==")
 def check(view: FileView) -> Iterator[RuleFinding]:
     """Yield a finding for each rule about steps with a state that compares a number with the step before.
 
-    A state is the value of an enum, or a name. At its first step, the step before is without it. There is none if the condition is about the step
-    before, too, nor for `<`, `>` and `!=`, which ask for a change.
+    A state is the value of an enum, or a name. At its first step, the step before is without it. There is none if the
+    condition is about the step before, too, nor for `<`, `>` and `!=`, which ask for a change.
     """
     for spec in view.specs:
         for clause, value in spec.clauses("keep", "require"):
@@ -36,8 +36,9 @@ def _state(asked: AskedResult) -> ScopedExpression | None:
     if has_step_before(asked.condition.tree):
         return None
     tests = [without_brackets(tree) for tree in conjuncts(asked.condition.tree)]
-    known = [tree for tree in tests if isinstance(tree, IsExpr)] or [tree for tree in tests if _is_named(tree)]
-    return asked.condition.with_tree(known[0]) if known else None
+    values = (tree for tree in tests if isinstance(tree, IsExpr))
+    state = next(values, None) or next((tree for tree in tests if _is_named(tree)), None)
+    return None if state is None else asked.condition.with_tree(state)
 
 
 def _is_named(tree: Expr) -> bool:

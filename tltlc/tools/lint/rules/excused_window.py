@@ -38,7 +38,9 @@ def _findings(
     answer: ScopedExpression, clause: Clause, value: ScopedExpression, *, is_block: bool
 ) -> Iterator[RuleFinding]:
     sides = operands(answer.tree, "or", through_brackets=True)
-    limits = [(place, call) for place, tree in enumerate(sides) if (call := _window(without_brackets(tree))) is not None]
+    limits = [
+        (place, call) for place, tree in enumerate(sides) if (call := _window(without_brackets(tree))) is not None
+    ]
     if len(sides) < 2 or len(limits) != 1:
         return
     ((place, call),) = limits

@@ -1,11 +1,15 @@
-"""TLT0453: `a implies times_since(p, a) >= 2`, where the count has just begun anew, and so is 0 or 1."""
+"""TLT0453: `a implies times_since(p, a) >= 2`, where the count has just begun anew, and so is 0 or 1.
+
+In `ends a and time_holding(a) < 2 s`, the time is 0 s.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 
+from tltlc.core.source import Span
 from tltlc.grammar.past_words import OF_EVENTS
-from tltlc.grammar.tree import CallExpr, Unary
+from tltlc.grammar.tree import BinaryExpr, CallExpr, Clause, Expr, Unary
 from tltlc.grammar.walk import conjuncts
 from tltlc.resolve.memory import PAST
 from tltlc.resolve.scope import MEMORY_FUNCTIONS
@@ -15,12 +19,57 @@ from tltlc.tools.lint.rule import LintRule, RuleFinding
 
 
 def check(view: FileView) -> Iterator[RuleFinding]:
-    """Yield a finding for each `times_since(p, q)` and `value_at(x, q)` that a rule asks for at a step with q."""
+    """Yield a finding for each `times_since(p, q)` and `value_at(x, q)` that a rule asks for at a step with q.
+
+    So it does for `time_holding(q)` at a step with `ends q`.
+    """
     for spec in view.specs:
+        seen: set[Span] = set()
+        for clause, value in spec.clauses("keep", "require", "avoid", "reach"):
+            for joint in _joint_parts(clause, value):
+                for finding in _ended(joint, view):
+                    if finding.labels[0].span not in seen:
+                        seen.add(finding.labels[0].span)
+                        yield finding
         for clause, value in spec.clauses("keep", "require"):
             for asked in asked_results(clause, value):
                 if not asked.steps:
                     yield from _findings(asked, view)
+
+
+def _joint_parts(clause: Clause, value: ScopedExpression) -> Iterator[list[ScopedExpression]]:
+    """Yield conditions that a clause speaks of at one step: those of a rule and its answer, or of what it forbids."""
+    if clause.kind in ("avoid", "reach"):
+        yield [value.with_tree(without_brackets(part)) for part in conjuncts(without_brackets(value.tree))]
+    for asked in asked_results(clause, value):
+        if not asked.steps:
+            parts = [asked.condition.with_tree(without_brackets(part)) for part in conjuncts(asked.condition.tree)]
+            yield [*parts, asked.part]
+
+
+def _ended(joint: list[ScopedExpression], view: FileView) -> Iterator[RuleFinding]:
+    """Yield a finding for each comparison of `time_holding(q)` beside `ends q`."""
+    for event in joint:
+        if not isinstance(event.tree, Unary) or event.tree.op != "ends":
+            continue
+        state = event.children()[0].formula()
+        for part in joint:
+            call = _held(part.tree)
+            if call is None or call.name in view.env.scope.names or state is None:
+                continue
+            if part.with_tree(without_brackets(call.arguments[0].value)).formula() == state:
+                held = part.with_tree(call).text
+                title = f"at a step with `{event.text}`, `{held}` is 0 s"
+                help_ = f"for the time up to the step before, write `previously ({part.text})`"
+                yield RuleFinding(title, (view.label(call.span),), help_)
+
+
+def _held(tree: Expr) -> CallExpr | None:
+    """Return the `time_holding(q)` that a comparison has on one side."""
+    if not isinstance(tree, BinaryExpr) or tree.op not in ("<", "<=", ">", ">="):
+        return None
+    sides = (without_brackets(tree.left), without_brackets(tree.right))
+    return next((side for side in sides if isinstance(side, CallExpr) and side.name == "time_holding"), None)
 
 
 def _findings(asked: AskedResult, view: FileView) -> Iterator[RuleFinding]:
