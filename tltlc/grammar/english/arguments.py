@@ -8,7 +8,7 @@ from typing import Final
 from tltlc.grammar.english.changed_arguments import changed_name
 from tltlc.grammar.mistakes.sentences.kinds import call_end
 from tltlc.grammar.mistakes.sentences.validity import is_valid
-from tltlc.grammar.mistakes.sentences.words import Word, Words
+from tltlc.grammar.mistakes.sentences.words import Word, Words, phrases
 
 _CONDITIONS: Final = {
     "times": (0,),
@@ -24,6 +24,9 @@ _CONDITIONS: Final = {
 }
 """Maps functions to the positions of those arguments that are conditions."""
 
+_LAST: Final = phrases("last", "the last", "previous", "the previous")
+"""Words before the event from which a function counts, which is always the last one."""
+
 ReadCondition = Callable[[Words], str]
 """Returns the condition that English words say; "" if they say none, or may say several."""
 
@@ -37,6 +40,9 @@ def with_read_arguments(words: Words, read: ReadCondition) -> Words:
         start, position = at + 2, 0
         while positions and start < stop:
             end = _argument_end(words, start, stop - 1)
+            if position == 1 and position in positions and words.phrase(start, _LAST):
+                words = words[:start].followed_by(words[start + len(words.phrase(start, _LAST)) :])
+                stop, end = call_end(words, at), _argument_end(words, start, call_end(words, at) - 1)
             is_read = position in positions and not changed_name(words, start)
             text = _condition(words[start:end], read) if is_read else ""
             if text:

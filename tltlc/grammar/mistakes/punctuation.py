@@ -12,7 +12,8 @@ from typing import Final
 
 from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.grammar.keywords import CLAUSES, TEST_ITEMS, UNITS_ELSEWHERE
-from tltlc.grammar.lexer import END, tokenize
+from tltlc.grammar.lexer import END, Token, tokenize
+from tltlc.grammar.mistakes.declared_names import declared_names
 from tltlc.grammar.mistakes.fragments import is_first_on_line
 from tltlc.grammar.mistakes.one_reading import QUANTIFIERS, UNCLEAR, has_token
 from tltlc.grammar.mistakes.parse_failure import BEFORE_ONE, INFIX, OPENING, ParseFailure, are_adjacent, outer_indices
@@ -26,6 +27,7 @@ from tltlc.grammar.mistakes.rephrasing import (
     text_of,
 )
 from tltlc.grammar.mistakes.sentences.vocabulary import CHANGING
+from tltlc.grammar.past_words import OF_EVENTS
 
 NAME: Final = re.compile("[A-Za-z_][A-Za-z0-9_]*")
 _COMMA: Final = {
@@ -38,6 +40,9 @@ In clauses that are not listed, the operator is `and`.
 """
 _NUMBER: Final = re.compile(r"[0-9]+\.[0-9]+(?:[eE][+-]?[0-9]+)?")
 _IN_THOUSANDS: Final = re.compile(r"[1-9][0-9]{0,2}(?:,[0-9]{3})+(?:\.[0-9]+)?")
+
+_LAST: Final = ("last", "previous")
+"""Words before an event: `times_since(hit, last checkpoint)`."""
 
 
 def comma(failure: ParseFailure) -> Diagnostic | None:
@@ -187,6 +192,16 @@ def missing_comma(failure: ParseFailure) -> Diagnostic | None:
         return failure.error("TLT0104", "`,` means nothing here", leave_out_help(failure), span=span)
     if before.type not in ("NAME", "NUMBER", "UNIT", "RPAR") or before.text in TEST_ITEMS:
         return None
+    if token.text == "ago" and before.type == "UNIT":
+        tokens = failure.tokens[failure.stop.index - 2 : failure.stop.index + 1]
+        text = f"{tokens[0].text} {tokens[1].text}"
+        return failure.error(
+            "TLT0101", "the language has no word `ago`", f"write `{text}`", span=span_of(tokens), write=text
+        )
+    if _is_english(failure, token):
+        return None
+    if before.text in _LAST and before.text not in declared_names(failure.source).names:
+        return failure.error("TLT0101", f"the language has no word `{before.text}`", f"leave out `{before.text}`")
     if word := next((text for text in (before.text, token.text) if text in CHANGING), ""):
         help_ = "that `x` changes is `x != previous(x)` for whole numbers, `begins x or ends x` for true and false"
         return failure.error("TLT0101", f"the language has no word `{word}`", help_)
@@ -194,6 +209,15 @@ def missing_comma(failure: ParseFailure) -> Diagnostic | None:
     text = f"{text_of(failure, failure.stop.index - 1 - has_unit, failure.stop.index)}, {token.text}"
     span = span_of(failure.tokens[failure.stop.index - 1 - has_unit : failure.stop.index + 1])
     return failure.error("TLT0101", failure.expectation(), f"write `{text}`", span=span, write=text)
+
+
+def _is_english(failure: ParseFailure, token: Token) -> bool:
+    """Whether a word in the brackets of a function of the past is no name of the file, as in `lap increases`."""
+    opening = failure.open_brackets[-1].start if failure.open_brackets else 0
+    called = next((before for before in failure.tokens if before.end == opening), None)
+    names = declared_names(failure.source)
+    is_function = called is not None and called.text in OF_EVENTS and called.text not in names.names
+    return is_function and token.type == "NAME" and token.text not in names.names and not names.has_imports
 
 
 def argument_by_name(failure: ParseFailure) -> Diagnostic | None:
