@@ -20,7 +20,6 @@ NO_READING = (
     "never fire or spray when boss_dead unless coins > 3",
     "fire before spray unless boss_dead",
     "when fire, spray within 5 s and then stays stopped until boss_dead",  # which value means that it is stopped?
-    "spray at least 5 s after fire",  # it lasts so long, or comes so late
     "health never more than 20 above its highest",  # which it never is
     "never fire or spray",
     "reach not fire within 5 s",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from tltlc.core.record import record
+from tltlc.core.record import record, replace
 from tltlc.grammar.english.conditions import Conditions
 from tltlc.grammar.english.events import Event, as_state
 from tltlc.grammar.english.quantities import Duration
@@ -141,6 +141,12 @@ class Answers(Conditions):
     def held_before(self, state: State, duration: Duration) -> Asked:
         return Asked(Answer("now", State(f"time_holding({state.text}) >= {duration.text}")))
 
+    def named_held_before(self, term: Term, duration: Duration) -> Asked:
+        return self.held_before(State(term.text), duration)
+
+    def value_held_before(self, name: Term, value: Term, duration: Duration) -> Asked:
+        return self.held_before(State(f"{name.text} is {value.text}"), duration)
+
     def held_before_first(self, duration: Duration, state: State) -> Asked:
         return self.held_before(state, duration)
 
@@ -210,6 +216,13 @@ class Answers(Conditions):
         if any(isinstance(part, Term) and part.text not in state.text.split() for part in rest):
             return None
         return self.within_then_until(state, duration, state, end)
+
+    def within_and_while(self, state: State, duration: Duration, *rest: Term | State) -> list[Asked] | None:
+        """Return the answer of `a within 5 s and stays so while b`."""
+        during = rest[-1]
+        assert isinstance(during, State)
+        answers = self.within_and_until(state, duration, *rest[:-1], during.negated())
+        return None if answers is None else [replace(answers[0], condition="")]
 
     def within_then_lasting(self, state: State, duration: Duration, kept: State, length: Duration) -> Asked:
         lasting = State(f"always for {length.text} {kept.at(ATOM)}")

@@ -53,6 +53,12 @@ class Conditions(Quantities):
         self._recent[recent.text] = (State(term.text), duration)
         return recent
 
+    def began_recently(self, term: Term, duration: Duration) -> State:
+        return State(f"once within {duration.text} begins {term.text}")
+
+    def ended_recently(self, term: Term, duration: Duration) -> State:
+        return State(f"once within {duration.text} ends {term.text}")
+
     def not_named(self, term: Term) -> State:
         return State(term.text).negated()
 

@@ -315,6 +315,27 @@ class Exceptions(Rules):
         early = self._held_so_long(during, "<", duration)
         return None if early is None else Reading((f"avoid {joined([*_without(state, during), early], 'and').text}",))
 
+    def keep_first_of(self, state: State, duration: Duration, during: State) -> Reading | None:
+        """Return the rule of `a in the first 1 s of b`."""
+        early = self._held_so_long(during, "<", duration)
+        if early is None or not are_simple(state, during) or state == during:
+            return None
+        return Reading((f"keep {early.at(OR)} implies {state.at(OR)}",))
+
+    def avoid_last_of(self, state: State, duration: Duration, during: State) -> Reading | None:
+        """Return the rule of `no a in the last 1 s of b`, which looks back where b has ended."""
+        if not are_simple(state, during) or state == during or is_negative(during):
+            return None
+        came = f"previously once within {duration.text} {state.at(ATOM)}"
+        return Reading((f"keep ends {during.at(ATOM)} implies not {came}",), f"where `{during.text}` has ended")
+
+    def keep_last_of(self, state: State, duration: Duration, during: State) -> Reading | None:
+        """Return the rule of `a in the last 1 s of b`."""
+        if not are_simple(state, during) or state == during or is_negative(during):
+            return None
+        held = f"previously historically for {duration.text} {state.at(ATOM)}"
+        return Reading((f"keep ends {during.at(ATOM)} implies {held}",), f"where `{during.text}` has ended")
+
     def avoid_while_except_first(self, state: State, condition: State, duration: Duration, *during: State) -> _Found:
         """Return the rule of `no a while b except for the first 1 s`, which is that of b."""
         both = joined([state, condition], "and")

@@ -278,6 +278,9 @@ class Intervals(Rules):
     def lasts_from_to(self, state: State, least: Duration, most: Duration) -> _Found:
         return self.lasts_between(state, (least, most))
 
+    def lasts_up_to(self, state: State, most: Duration, least: Duration) -> _Found:
+        return self.lasts_between(state, (least, most))
+
     def lasts_between(self, state: State, durations: tuple[Duration, Duration]) -> _Found:
         least, most = durations
         longest = never_held(Held(state, ">", most))

@@ -28,6 +28,7 @@ class LaterTimes(Rules):
     def __init__(self, names: DeclaredNames) -> None:
         super().__init__(names)
         self._lasted: dict[str, State] = {}
+        self._or_held: dict[str, tuple[State, State]] = {}
         """What each time that looks back is the time of."""
 
     # Answers between two times.
@@ -173,6 +174,14 @@ class LaterTimes(Rules):
         self._lasted[asked.answer.state.text] = state
         return asked
 
+    def held_before_or(self, state: State, duration: Duration, other: State) -> Asked:
+        """Return the answer of `b for the last 2 s or c`."""
+        held = self.held_before(state, duration).answer.state
+        either = joined([held, other], "or")
+        self._lasted[either.text] = state
+        self._or_held[either.text] = held, other
+        return Asked(Answer("now", either))
+
     def held_until_then(self, state: State, duration: Duration) -> Asked | None:
         """Return the answer of `when a, b for at least 2 s` that looks back, where b has lasted until then."""
         if state.level > ATOM or is_edge(state):
@@ -202,7 +211,8 @@ class LaterTimes(Rules):
         if is_ended and not answers[1:]:
             # It ends at this step, so the time is that up to the step before.
             asked = answers[0]
-            before = State(f"previously {asked.answer.state.at(ATOM)}")
+            held, *others = self._or_held.get(asked.answer.state.text, (asked.answer.state,))
+            before = joined([State(f"previously {held.at(ATOM)}"), *others], "or")
             answers = [replace(asked, answer=replace(asked.answer, state=before), condition="")]
         if answers[0].late is not None:
             return self._late(event, answers[0], answers[0].late)
@@ -283,6 +293,10 @@ class LaterTimes(Rules):
         clause = f"keep {state.at(OR)} implies time_since({event.text}) >= {self._time_text(duration)}"
         free = f"if no `{event.text}` may be less than {duration.text} ago, and none need have come"
         return [Reading((clause,), free), *readings]
+
+    def avoid_sooner(self, state: State, duration: Duration, event: Event) -> _Found:
+        """Return the rule of `no b less than 5 s after a`."""
+        return self.last([self.never_for(state, duration)], "after", event)
 
     def _time_text(self, duration: Duration) -> str:
         """Return a time in seconds, rounded down, so that no further step is needed; "" if the clock varies."""

@@ -17,6 +17,8 @@ from tltlc.grammar.mistakes.sentences.states import AND, ATOM, OR, State, joined
 
 _MOST_GOALS: Final = 8
 """The most goals that repeated goals are written out to."""
+_EACH_STEP: Final = "if each step counts"
+_PAIR: Final = 2
 _FEWEST_VALUES: Final = 3
 """With two values, `from a to b` may be the only change that is allowed, or the only way to b."""
 
@@ -110,11 +112,16 @@ class Orders(Rules):
 
     def reach_goals_within(self, goals: Goals, duration: Duration) -> _Found:
         """Return the readings of `a then b then c within 5 s`, by the step from which the time counts."""
+        return self._goals_within(goals, duration, is_for_all=bool(goals.condition))
+
+    def _goals_within(self, goals: Goals, duration: Duration, *, is_for_all: bool) -> _Found:
         if len(goals.states) < 2:
             return None
         first, *between, last = goals.states
         if is_negative(last) or any(" then " in goal.text or "always " in goal.text for goal in goals.states):
             return None
+        if goals.condition == _EACH_STEP:
+            return None  # of repeated goals, each beginning counts
         time, earlier, whole = duration.text, [first, *between], _last_of(goals)
         readings = [
             Reading(
@@ -122,12 +129,14 @@ class Orders(Rules):
                 "if the time is for all of them, from the first step of play on",
             )
         ]
-        if between and _may_begin(first) and len(set(goals.states)) == len(goals.states):
+        if between and _may_begin(first) and goals.states.count(first) == 1:
             # The time counts from the last beginning of the first goal.
             timed = joined([last, State(f"once within {time} {begun_text(first)}")], "and")
             goal = " then ".join([*(state.at(OR) for state in earlier), timed.at(ATOM)])
             where = f"from where `{first.text}` begins, the last time if it begins again"
             readings.append(Reading((f"reach {goal}",), f"if it is for all of them, {where}"))
+        if is_for_all:
+            return readings
         rest, nearest = f"then within {time} {last.at(OR)}", earlier[-1]
         if _may_begin(nearest) and not nearest.text.startswith(("begins ", "ends ")):
             begun = " then ".join([*(state.at(OR) for state in earlier[:-1]), begun_text(nearest)])
@@ -135,6 +144,10 @@ class Orders(Rules):
         goal = " then ".join(state.at(OR) for state in earlier)
         where = f"any step with `{nearest.text}`, such as the last"
         return [*readings, Reading((f"reach {goal} {rest}",), f"if it counts from {where}")]
+
+    def reach_all_goals_within(self, goals: Goals, duration: Duration) -> _Found:
+        """Return the readings of `a then b then c, all within 5 s`, without those of the last step alone."""
+        return self._goals_within(goals, duration, is_for_all=len(goals.states) > _PAIR)
 
     def reach_goals_within_of(self, goals: Goals, duration: Duration, start: State) -> _Found:
         """Return the goal of `a then b then c within 5 s of a`: the time counts from one of the goals before c."""
@@ -389,7 +402,7 @@ def _counted_goals(events: Sequence[Event]) -> list[Goals] | None:
     Each step counts, or each beginning.
     """
     readings = []
-    for is_begun, condition in ((True, "if steps in a row count once"), (False, "if each step counts")):
+    for is_begun, condition in ((True, "if steps in a row count once"), (False, _EACH_STEP)):
         states: list[State] = []
         for at, event in enumerate(events):
             if at and isinstance(event, Counted):

@@ -11,7 +11,7 @@ from tltlc.grammar.english.differences import Period
 from tltlc.grammar.english.events import Counted, Event, as_state
 from tltlc.grammar.english.intervals import Span, is_edge
 from tltlc.grammar.english.quantities import IT, Duration, begun, counted_by
-from tltlc.grammar.english.rules import Reading, When, all_readings, begun_text
+from tltlc.grammar.english.rules import Reading, When, all_readings, are_simple, begun_text
 from tltlc.grammar.english.terminals import Term
 from tltlc.grammar.english.totals import Totals, without_brackets
 from tltlc.grammar.mistakes.sentences.states import AND, ATOM, OR, State, joined
@@ -250,6 +250,9 @@ class Periods(Totals):
         last = f"up to number {numbers[-1]}: no clause counts for ever"
         return [replace(one, condition=" and ".join(filter(None, (one.condition, last)))) for one in readings]
 
+    def answers_of_each_nth(self, answers: list[Asked], number: str, term: Term) -> list[Reading]:
+        return self.each_nth(number, term, answers)
+
     # Up to an event.
 
     def count_until(self, counted: Counted, end: State) -> _Found:
@@ -353,6 +356,19 @@ class Periods(Totals):
             return second_step
         count = Reading((f"keep times_since({first.text}, {between.text}) <= 1",), "if steps in a row count once")
         return [count, replace(second_step, condition="if each step counts")]
+
+    def avoid_then_within_without(
+        self, first: State, duration: Duration, second: State, between: State
+    ) -> Reading | None:
+        """Return the rule of `avoid a then within 3 s b without c in between`; it looks back from b."""
+        steps = round(self.steps(duration), 6)
+        if not are_simple(first, second, between) or not steps.is_integer() or steps < 2:
+            return None
+        if not duration.is_steps and not self._step_s:
+            return None
+        came = f"previously (not {between.at(ATOM)} since {first.at(ATOM)})"
+        recent = f"previously once within {int(steps) - 1} steps {first.at(ATOM)}"
+        return Reading((f"avoid {second.at(AND)} and {came} and {recent}",))
 
     def reach_count_without(self, counted: Counted, between: State) -> _Found:
         """Return the readings of `reach a 3 times without b`: none up to the third, between them, or at all."""

@@ -100,6 +100,9 @@ PHRASES: Final[Mapping[str, str]] = {
     "in the next|within the next|in next|within next|not later than|under",
     "first": "in the first|within the first|during the first|in first|within first|during first|for the first|"
     "for first",
+    "in_last": "in last|during last|within last|for last|throughout last|over last",
+    "must_have_been": "must have been|must have been true|must have held|must have stayed|should have been|"
+    "has to have been",
     "last_long": "last|lasts|take|go on|continue|go on for|last for|stay on|be on",
     "stop": "end|stop|be over|finish|be finished",
     "hold": "hold|must hold|have to hold|need to hold|maintain|must maintain",

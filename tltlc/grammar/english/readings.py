@@ -12,6 +12,7 @@ from tltlc.grammar.english.arguments import with_read_arguments
 from tltlc.grammar.english.bounds import Bounds
 from tltlc.grammar.english.contradictions import forbids_its_event
 from tltlc.grammar.english.counts_since import CountsSince
+from tltlc.grammar.english.ends import end_of, with_end
 from tltlc.grammar.english.events import Crossing, as_state
 from tltlc.grammar.english.exceptions import Exceptions
 from tltlc.grammar.english.extremes import Extremes
@@ -50,6 +51,8 @@ _VERBS: Final = phrases(
     *("never twice", "never two", "never three"),
 )
 """Words that need no `keep` before their sentence."""
+_NEVER: Final = phrases("never drops", "never falls", "never rises", "never changes", "never goes", "never loses")
+_IN_TIME: Final = phrases("within", "in any", "over")
 _BEFORE_EVENTS: Final = frozenset(("while", "during", "between"))
 """Words that begin a rule of their own, and need no `keep` before them."""
 _COMING: Final = ("come", "comes")
@@ -100,8 +103,12 @@ def sentence(words: Words) -> Sentence:
     if words is not typed and is_valid((words.text,)):
         return Sentence((Reading((words.text,)),))
     whole = _sentence(words)
-    needs_no_keep = words.word(0) == "keep" and (words.word(1) in _BEFORE_EVENTS or words.find(_VERBS))
+    is_verb = words.word(1) in (*_BEFORE_EVENTS, "no") or words.find(_VERBS)
+    is_limit = words.find(_NEVER) is not None and words.find(_IN_TIME) is not None
+    needs_no_keep = words.word(0) == "keep" and (is_verb or is_limit)
     if not whole.readings and not whole.limit and needs_no_keep:
+        whole = _sentence(words[1:])
+    if not whole.readings and not whole.limit and words.word(0) == "always" and words.word(1) in _BEFORE_EVENTS:
         whole = _sentence(words[1:])
     if whole.readings or whole.limit:
         return whole
@@ -110,21 +117,42 @@ def sentence(words: Words) -> Sentence:
         return Sentence((Reading(tuple(clause for rule in rules if rule for clause in rule.clauses)),))
     lines = words.lines()
     if len(lines) < 2:
-        return whole
+        return whole if whole.limit else _with_end(words)
     sentences = [_sentence(line) for line in lines]
     if any(len(line.readings) != 1 for line in sentences):
         return whole
     return Sentence((Reading(tuple(clause for line in sentences for clause in line.readings[0].clauses)),))
 
 
+def _with_end(words: Words) -> Sentence:
+    """Return the readings of a sentence whose end, such as `unless c`, no rule of the grammar has."""
+    end = end_of(words)
+    if end is None:
+        return Sentence()
+    if end.time is not None and end.time in f" {end.before.text} " and (shorter := _sentence(end.whole)).readings:
+        return shorter
+    said = _said_state(end.condition)
+    readings = sentence(end.before).readings if said is not None else ()
+    if len(readings) == 1 and readings[0].condition:
+        return Sentence()  # it may mean something else, too
+    ended = [with_end(reading, end, said) for reading in readings if said is not None]
+    known = [reading for reading in ended if reading is not None and is_valid(reading.clauses)]
+    is_all = len(known) == len(readings) or end.time is not None
+    return Sentence(tuple(known) if is_all else ())
+
+
 def _said_condition(words: Words) -> str:
     """Return the condition that words say; "" if they say none, or may say several."""
+    state = _said_state(words)
+    return "" if state is None else state.text
+
+
+def _said_state(words: Words) -> State | None:
     parser = sentence_parser()
     terminals = terms(words, parser.vocabulary) if parser else None
     tree = parser.parse(terminals, "part") if parser and terminals else None
     values = _values(tree.children[0], Meanings(words.names)) if tree else []
-    state = as_state(values[0]) if len(values) == 1 else None
-    return state.text if state is not None else ""
+    return as_state(values[0]) if len(values) == 1 else None
 
 
 def unread_rule(words: Words) -> str:
@@ -164,6 +192,8 @@ def sentence_forms(words: Words) -> tuple[Form, ...]:
     rules = Meanings(words.names)
     if any(term.kind == UNKNOWN or (term.kind == "BOOL" and term.declared is None) for term in terminals):
         return ()
+    if any(one.kind == "UNIT" and other.text in ("of", "time") for one, other in pairwise(terminals)):
+        return ()  # a share of the time
     parts: list[Part] = []
     at = 0
     while at < len(terminals):

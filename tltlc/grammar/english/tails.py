@@ -9,7 +9,7 @@ from tltlc.grammar.english.answers import Asked, operated
 from tltlc.grammar.english.changes import Changes
 from tltlc.grammar.english.events import Event, Held, as_state, joined_events
 from tltlc.grammar.english.quantities import Duration
-from tltlc.grammar.english.rules import Reading, When, all_readings, are_simple
+from tltlc.grammar.english.rules import Reading, When, all_readings, are_simple, begun_text
 from tltlc.grammar.mistakes.sentences.answers import Answer
 from tltlc.grammar.mistakes.sentences.states import ATOM, OR, State, joined
 
@@ -33,6 +33,18 @@ class Tails(Changes):
         is_clear = len(answers) == 1 and not answers[0].is_formula
         return [[replace(one, condition="" if is_clear else one.condition)] for one in answers]
 
+    def answers_unless(self, *parts: Asked | Event) -> list[list[Asked]] | None:
+        """Return the answers of `b for 3 s and d within 5 s unless c`, where c ends each of the times."""
+        *times, exception = parts
+        excuse = None if isinstance(exception, Asked) else as_state(exception)
+        asked = [part for part in times if isinstance(part, Asked)]
+        if excuse is None or any(one.answer.state.text in _both(excuse) for one in asked):
+            return None
+        excused = [one for one in (self._in_time(part, excuse) for part in asked) if one is not None]
+        if len(excused) < len(asked):
+            return None
+        return [[replace(one, condition="", is_once=True) for one in excused]]
+
     def last_unless(self, answers: list[Asked], when: When, event: Event, exception: Event) -> _Found:
         """Return the rule of `b for 3 s when a unless c`."""
         asked = answers[0]
@@ -52,6 +64,8 @@ class Tails(Changes):
         """Return the answer of `b within 5 s unless c comes first`."""
         excuse = as_state(event)
         if excuse is None or asked.condition or asked.answer.keyword == "reach":
+            return None
+        if asked.answer.state.text in _both(excuse):
             return None
         answer = self._in_time(asked, excuse)
         return None if answer is None else [[replace(answer, condition="")]]
@@ -163,6 +177,14 @@ class Tails(Changes):
         state, joint, asked = as_state(event), joined_events([event, condition], "and"), answers[0]
         if state is None or joint is None:
             return None
+        if asked.is_formula and " always " in asked.answer.state.text:
+            return None  # `b within 2 s and stays so while c`, which lasts as long as c
+        if (
+            state.text in (begun_text(condition), f"begins ({condition.text})")
+            and asked.answer.kind == "within"
+            and not answers[1:]
+        ):
+            return self._while_begun(asked, condition, all_readings(rule(event, [asked])))
         whole = all_readings(rule(joint, answers))
         is_timed = asked.answer.kind in ("within", "lasting") or asked.denied is not None or asked.until is not None
         shorter = self.answer_unless_then(asked, condition.negated()) if is_timed and not answers[1:] else None
@@ -172,6 +194,18 @@ class Tails(Changes):
         return [
             replace(whole[0], condition=f"if `{condition.text}` counts at the step of `{state.text}`"),
             replace(ended[0], condition=f"if nothing is asked for once `{condition.text}` is over"),
+        ]
+
+    def _while_begun(self, asked: Asked, during: State, readings: list[Reading]) -> list[Reading]:
+        """Return the readings of `when a begins, b within 2 s while a`: b from then on, or b once in that time."""
+        time, b = asked.answer.time, asked.answer.state
+        held = Reading(
+            (f"keep time_holding({during.text}) >= {time} implies {b.at(OR)}",),
+            f"if `{b.text}` must hold from {time} on, as long as `{during.text}` does",
+        )
+        return [
+            held,
+            *(replace(one, condition=f"if `{b.text}` at one step of that time is enough") for one in readings),
         ]
 
 

@@ -29,6 +29,8 @@ _NUMBERS: Final = ("previous", "initial", "highest", "lowest", "time_since", "ti
 _BEFORE_PERIODS: Final = ("in", "within", "during", "over", "from", "any", "for")
 _WHOLE: Final = ("whole", "entire")
 """Words before a noun that stands for all of play, although it may be a value, too: `in the whole run`."""
+_ORDINALS: Final = {"1": "first", "2": "second", "3": "third", "4": "fourth", "5": "fifth"}
+_ENDINGS: Final = {"1": "st", "2": "nd", "3": "rd", "4": "th", "5": "th"}
 _LETTERS: Final = {"Y": "previously", "O": "once", "H": "historically", "S": "since"}
 """Maps the letters of logic for the past to words."""
 UNKNOWN: Final = "UNKNOWN"
@@ -116,6 +118,9 @@ def _terms(words: Words, vocabulary: Mapping[str, str]) -> Iterator[Term]:
             yield Term(vocabulary["right"], "right")
         elif word.text == "one" and (words.word(at) == "of" or _is_article(words, start)):
             yield Term(vocabulary["one"], "one")
+        elif words.word(at) == _ENDINGS.get(word.text) and (text := _ORDINALS[word.text]) in vocabulary:
+            yield Term(vocabulary[text], text)
+            at += 1
         elif number := words.number(start):
             yield Term("NUMBER", number)
         elif words.word(start - 1) in _WHOLE and word.text in vocabulary:
@@ -124,6 +129,8 @@ def _terms(words: Words, vocabulary: Mapping[str, str]) -> Iterator[Term]:
             yield Term("VALUE", words[start:at].text)
         elif start and words.number(start - 1) and (unit := _unit(word.text)) and word.text not in words.names.names:
             yield Term("TIME_UNIT" if unit in _TIME_UNITS else "UNIT", unit)
+        elif words[start - 1 : at].text == "every second" and at < len(words) and words[at].is_name:
+            yield Term(vocabulary["second"], "second")
         elif words.word(start - 1) in ("per", "every", "each") and _unit(word.text) in ("s", "min", "h"):
             yield Term("NUMBER", "1")
             yield Term("TIME_UNIT", _unit(word.text))

@@ -249,6 +249,11 @@ class TimedAnswers(Rules):
             replace(self.either(alone, other), condition=f"if the time is for `{state.text}` alone"),
         ]
 
+    def within_first_or(self, duration: Duration, state: State, other: State) -> Asked | None:
+        """Return the answer of `(within 2 s b) or c`."""
+        asked = self.within(state, duration)
+        return self.either(asked, other) if isinstance(asked, Asked) else None
+
     def either_now_first(self, state: State, asked: Asked) -> Asked:
         known = _as_formula(asked)
         return replace(known, answer=replace(known.answer, state=joined([state, known.answer.state], "or")))

@@ -67,6 +67,11 @@ class Totals(Differences):
             Reading((f"keep {rule}",), f"if it must be so at each step, and {longest}"),
         ]
 
+    def share_at_end(self, reading: Reading) -> Reading | None:
+        """Return the rule of `at the end, hidden at least half of the time`, from those at the end and at each step."""
+        is_at_end = reading.clauses[0].startswith("require eventually always ")
+        return replace(reading, condition=f"if no play is longer than {_LONGEST_PLAY}") if is_at_end else None
+
     def total_share(self, total: Term, sign: str | Term, share: str) -> list[Reading] | None:
         """Return the rules of `total_time(a) <= 20 % of the time`."""
         name, _, inner = total.text.partition("(")

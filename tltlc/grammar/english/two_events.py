@@ -7,7 +7,7 @@ from tltlc.grammar.english.answers import Asked, is_negative
 from tltlc.grammar.english.events import Event, as_state
 from tltlc.grammar.english.intervals import is_edge
 from tltlc.grammar.english.quantities import Duration
-from tltlc.grammar.english.rules import Reading, Rules, When, are_simple, begun_text, not_again
+from tltlc.grammar.english.rules import Goals, Reading, Rules, When, are_simple, begun_text, not_again
 from tltlc.grammar.english.terminals import Term
 from tltlc.grammar.mistakes.sentences.answers import Answer
 from tltlc.grammar.mistakes.sentences.states import ATOM, OR, State, joined
@@ -128,6 +128,29 @@ class TwoEvents(Rules):
             Asked(Answer("now", from_now), f"if no `{never.text}` may come from that step on", is_formula=True),
         ]
 
+    def and_denied(self, *states: State | Goals) -> list[Asked] | None:
+        """Return the answers of `b and (never c or never d)`: no c up to that step, or no d; or from it on."""
+        *others, denied = states
+        asked = [state for state in others if isinstance(state, State)]
+        if not isinstance(denied, Goals) or not are_simple(*asked, *denied.states):
+            return None
+        so_far = joined([State(f"not once {never.at(ATOM)}") for never in denied.states], "or")
+        from_now = joined([State(f"(always {never.negated().at(ATOM)})") for never in denied.states], "or")
+        return [
+            Asked(Answer("now", joined([*asked, so_far], "and")), "if it is about what came up to that step"),
+            Asked(
+                Answer("now", joined([*asked, from_now], "and")),
+                "if it is about what comes from that step on",
+                is_formula=True,
+            ),
+        ]
+
+    def only_when_never(self, state: State, never: State) -> Reading | None:
+        """Return the rule of `a only if never b`."""
+        if not are_simple(state, never) or state == never:
+            return None
+        return Reading((f"keep {state.at(OR)} implies not once {never.at(ATOM)}",))
+
     def avoid_then(self, first: State, *rest: Duration | State) -> _Found:
         """Return the rule of `avoid a then within 3 s b`, or `a again`, which must not begin once more."""
         second = rest[-1]
@@ -222,6 +245,18 @@ class TwoEvents(Rules):
         if duration.is_steps or not is_edge(event) or event.level > ATOM:
             return None
         return State(f"time_since({event.text}) {sign} {duration.text}")
+
+    def time_since_limit(self, state: State, sign: str | Term, duration: Duration) -> list[Reading] | None:
+        """Return the readings of `the time since a is at most 5 s`: from the first step of play on, or from a."""
+        text = sign if isinstance(sign, str) else sign.text
+        if text not in ("<", "<=") or duration.is_steps or not are_simple(state):
+            return None
+        since = f"time_since({state.text}) {text} {duration.text}"
+        from_start = f"keep time_holding({state.negated().text}) {text} {duration.text}"
+        return [
+            Reading((f"keep once {state.at(ATOM)} implies {since}",), f"if it counts from the first `{state.text}` on"),
+            Reading((from_start,), "if it counts from the first step of play on"),
+        ]
 
     def elapsed_at(self, when: When, event: Event, elapsed: State) -> Reading | None:
         """Return the rule of `when a ends, at least 2 s since a began`; the time since a itself is 0 at each a."""

@@ -79,6 +79,9 @@ class Windows(Differences):
         count = f"times_within({counted.state.text}, {window.text}) {counted.sign} {counted.number}"
         return Reading((f"keep {state.at(OR)} implies {count}",))
 
+    def count_in_any_implied(self, event: Event, counted: Counted, window: Duration) -> Reading | None:
+        return self.when_count_in_any("when", event, counted, window)
+
     def count_within_after(self, counted: Counted, window: Duration, event: Event) -> Reading | None:
         return self.when_count_within("after", event, counted, window)
 

@@ -69,7 +69,8 @@ _ENGLISH_ALONE: Final = (
 )
 """Words whose meaning in English is not that of an operator, or more than that of a comparison."""
 _WITHOUT_REQUIRE: Final = phrases(
-    "change", "changes", "stay", "stays", "remain", "remains", "until within", "at the end"
+    *("change", "changes", "stay", "stays", "remain", "remains", "until within", "at the end"),
+    *("until first", "until the first", "before first", "before the first"),
 )
 """Words of a sentence behind `require` that need no `require`, which asks for something at the first step alone."""
 _DENIED_TWICE: Final = phrases("and no", "or no", "nor")
