@@ -14,6 +14,10 @@ BEFORE = f"clock 1 Hz\n{SIGNALS}"
     [
         ("times(begins a or ends a)", "times(begins a) + times(ends a)"),
         ("times_within((begins a) or ends b, 3 s)", "times_within(begins a, 3 s) + times_within(ends b, 3 s)"),
+        (
+            "times((begins a or ends b) and not c and (a or b))",
+            "times(begins a and not c and (a or b)) + times(ends b and not c and (a or b))",
+        ),
         ("times_since(begins a or begins b, c)", "times_since(begins a, c) + times_since(begins b, c)"),
     ],
 )
@@ -32,7 +36,14 @@ def test_a_count_in_arithmetic_gets_its_sum_in_brackets() -> None:
 
 
 @pytest.mark.parametrize(
-    "count", ["times(a or b)", "times(begins a)", "times(begins a or b)", "times(begins a and ends b)"]
+    "count",
+    [
+        "times(a or b)",
+        "times(begins a)",
+        "times(begins a or b)",
+        "times(begins a and ends b)",
+        "times((begins a or b) and c)",
+    ],
 )
 def test_other_counts_get_none(count: str) -> None:
     assert "TLT0465" not in codes(block(f"keep {count} <= 2", before=BEFORE))

@@ -7,8 +7,8 @@ from typing import Final
 
 from tltlc.diagnostics.diagnostic import Label
 from tltlc.grammar.tree import BinaryExpr, CallExpr, Expr, Unary
-from tltlc.grammar.walk import operands
-from tltlc.tools.lint.file_view import FileView, ScopedExpression, edited_text, without_brackets
+from tltlc.grammar.walk import conjuncts, operands
+from tltlc.tools.lint.file_view import FileView, ScopedExpression, edited_text, operand_text, without_brackets
 from tltlc.tools.lint.rule import LintRule, RuleFinding
 
 _COMPARISONS: Final = ("<", "<=", ">", ">=", "==", "!=")
@@ -28,10 +28,19 @@ def check(view: FileView) -> Iterator[RuleFinding]:
                 call = part.tree
                 if isinstance(call, CallExpr) and call.name in _COUNTS and call.name not in view.env.scope.names:
                     counted = part.with_tree(without_brackets(call.arguments[0].value))
-                    if isinstance(counted.tree, BinaryExpr) and counted.tree.op == "or":
-                        kinds = [counted.with_tree(without_brackets(side)) for side in operands(counted.tree, "or")]
-                        if all(isinstance(kind.tree, Unary) and kind.tree.op in ("begins", "ends") for kind in kinds):
-                            yield _finding(part, kinds, value if id(call) in compared else None, keyword)
+                    for kinds, rest in _changes(counted):
+                        yield _finding(part, kinds, rest, value if id(call) in compared else None, keyword)
+
+
+def _changes(counted: ScopedExpression) -> Iterator[tuple[list[ScopedExpression], list[ScopedExpression]]]:
+    """Yield the beginnings and ends of `(begins a or ends a) and b`, and the other conditions beside them."""
+    sides = [counted.with_tree(without_brackets(side)) for side in conjuncts(counted.tree)]
+    for side in sides:
+        kinds = [side.with_tree(without_brackets(kind)) for kind in operands(side.tree, "or")]
+        if len(kinds) > 1 and all(
+            isinstance(kind.tree, Unary) and kind.tree.op in ("begins", "ends") for kind in kinds
+        ):
+            yield kinds, [other for other in sides if other is not side]
 
 
 def _sides(value: ScopedExpression) -> Iterator[Expr]:
@@ -42,12 +51,17 @@ def _sides(value: ScopedExpression) -> Iterator[Expr]:
 
 
 def _finding(
-    count: ScopedExpression, kinds: list[ScopedExpression], whole: ScopedExpression | None, keyword: str
+    count: ScopedExpression,
+    kinds: list[ScopedExpression],
+    rest: list[ScopedExpression],
+    whole: ScopedExpression | None,
+    keyword: str,
 ) -> RuleFinding:
     """Return the finding for a count, with its whole clause if a side of a comparison is that count."""
     assert isinstance(count.tree, CallExpr)
     others = [count.with_tree(argument.value).text for argument in count.tree.arguments[1:]]
-    calls = [f"{count.tree.name}({', '.join((kind.text, *others))})" for kind in kinds]
+    events = [" and ".join((kind.text, *(operand_text(other) for other in rest))) for kind in kinds]
+    calls = [f"{count.tree.name}({', '.join((event, *others))})" for event in events]
     label = Label(count.source, count.tree.span, "if they take turns at each step, this counts only the first")
     total = " + ".join(calls)
     offered = f"`({total})`, with a maximum in each"

@@ -32,6 +32,8 @@ def check(view: FileView) -> Iterator[RuleFinding]:
 def _counted(condition: ScopedExpression, view: FileView) -> ScopedExpression | None:
     """Return what a condition counts that says how often it has come at least."""
     tree = condition.tree
+    if isinstance(tree, Unary) and tree.op == "begins":
+        tree = without_brackets(tree.operand)
     if not isinstance(tree, BinaryExpr) or tree.op not in (">", ">=", "=="):
         return None
     call = without_brackets(tree.left)
@@ -60,7 +62,8 @@ def _finding(asked: AskedResult, event: ScopedExpression, keyword: str) -> RuleF
     if isinstance(asked.part.tree, Unary) and asked.part.tree.op == "not":
         later = f"previously ({condition}) implies {begun}"
     else:
-        later = f"begins ({condition}) implies weak_next ({answer.replace(f'not {counted}', begun, 1)})"
+        event_text = condition if condition.startswith("begins ") else f"begins ({condition})"
+        later = f"{event_text} implies weak_next ({answer.replace(f'not {counted}', begun, 1)})"
     help_ = f"if no `{event.text}` may begin after it, write `{keyword}{later}`"
     return RuleFinding(f"the `{event.text}` that is counted last breaks this rule", (label,), help_)
 

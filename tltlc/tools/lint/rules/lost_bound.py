@@ -100,7 +100,8 @@ def _before_sequence(part: ScopedExpression, event: str | None) -> Iterator[Rule
             whole = goals[0]
             for goal in goals[1:]:
                 whole = f"({goal} and previously (not {event} since {whole}))"
-            advice.insert(0, f"for all of it within {time} of `{event}`, write `eventually {bound} {whole}`")
+            anew = f"where each `{event}` asks for all of it anew, also if one before it is not answered yet"
+            advice.insert(0, f"for all of it within {time} of `{event}`, write `eventually {bound} {whole}`, {anew}")
         elif event is None:
             timed = f"({first} and time_holding(true) <= {time})"
             advice.append(f"for a time from the first step of play, write `{timed}` for `{first}`")

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from tltlc.core.source import Span
 from tltlc.grammar.past_words import OF_EVENTS
 from tltlc.grammar.tree import BinaryExpr, CallExpr, Clause, Expr, Unary
-from tltlc.grammar.walk import conjuncts
+from tltlc.grammar.walk import conjuncts, operands
 from tltlc.resolve.memory import PAST
 from tltlc.resolve.scope import MEMORY_FUNCTIONS
 from tltlc.tools.lint.asked_results import AskedResult, asked_results
@@ -44,7 +44,9 @@ def _joint_parts(clause: Clause, value: ScopedExpression) -> Iterator[list[Scope
     for asked in asked_results(clause, value):
         if not asked.steps:
             parts = [asked.condition.with_tree(without_brackets(part)) for part in conjuncts(asked.condition.tree)]
-            yield [*parts, asked.part]
+            answers = [asked.part.with_tree(without_brackets(part)) for part in operands(asked.part.tree, "or")]
+            # TLT0432 has an answer that never holds.
+            yield [*parts, *(part for part in answers if answers[1:] or not _is_least(part.tree))]
 
 
 def _ended(joint: list[ScopedExpression], view: FileView) -> Iterator[RuleFinding]:
@@ -62,6 +64,10 @@ def _ended(joint: list[ScopedExpression], view: FileView) -> Iterator[RuleFindin
                 title = f"at a step with `{event.text}`, `{held}` is 0 s"
                 help_ = f"for the time up to the step before, write `previously ({part.text})`"
                 yield RuleFinding(title, (view.label(call.span),), help_)
+
+
+def _is_least(tree: Expr) -> bool:
+    return isinstance(tree, BinaryExpr) and tree.op in (">", ">=") and _held(tree) is not None
 
 
 def _held(tree: Expr) -> CallExpr | None:
