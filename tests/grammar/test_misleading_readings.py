@@ -206,6 +206,8 @@ HELPS = {
     "whenever fire, coins rises by at least 3 within 0.3 s": (
         "write `keep begins fire implies eventually within 0.3 s coins >= value_at(coins, begins fire) + 3` "
         "if it is compared with its value at `begins fire`, "
+        "or `keep begins fire implies eventually within 0.3 s coins >= value_at(previous(coins), begins fire) + 3` "
+        "if it is compared with its value at the step before, "
         "or `keep fire implies eventually within 0.3 s coins >= previous(coins) + 3` "
         "if it must change so much from one step to the next"
     ),

@@ -193,7 +193,7 @@ SEVERAL_READINGS = {
         (
             "reach fire and lap <= 3 and next (lap <= 3 until (spray and lap <= 3 and next (lap <= 3 until "
             "(boss_dead and lap <= 3))))",
-            "if no step from `fire` to `boss_dead` may have it, these two included",
+            "if no step from one with `fire` to `boss_dead` may have it, these two included",
         ),
         (
             "reach fire and next (lap <= 3 until (spray and lap <= 3 and next (lap <= 3 until boss_dead)))",
@@ -468,7 +468,7 @@ SEVERAL_READINGS = {
         ("reach fire then spray", "avoid boss_dead", "if `boss_dead` must hold at no step of play"),
         (
             "reach fire and not boss_dead and next (not boss_dead until (spray and not boss_dead))",
-            "if no step from `fire` to `spray` may have it, these two included",
+            "if no step from one with `fire` to `spray` may have it, these two included",
         ),
         ("reach fire and next (not boss_dead until spray)", "if only no step between `fire` and `spray` may have it"),
     ],

@@ -26,6 +26,15 @@ _MOST_PREVIOUS: Final = 3
 
 
 @record
+class LateWindow:
+    """An answer in a window that is too late to look ahead to, and what may excuse it."""
+
+    state: State
+    window: tuple[Duration, Duration]
+    excuse: State | None = None
+
+
+@record
 class Asked:
     """What a rule asks for after its condition, and when the words mean that.
 
@@ -34,7 +43,8 @@ class Asked:
     is what holds after a change that is asked for: a for `begins a`. ``denied`` is what must not hold for a time,
     and ``until`` what is asked for until something else, which need not come. ``operated`` has the operator and the
     operand of a formula such as ``weak_next always for 1 s a``. ``is_timed`` says that a formula asks for something
-    within a time or for a time, and ``late`` is the time of an answer that is due too many steps later to look ahead.
+    within a time or for a time, and ``late`` is the time of an answer that is due too many steps later to look ahead,
+    as ``late_window`` is for a window. ``is_window`` says that a formula is about such a window.
     """
 
     answer: Answer
@@ -47,6 +57,8 @@ class Asked:
     operated: tuple[str, State] | None = None
     is_timed: bool = False
     late: Duration | None = None
+    late_window: LateWindow | None = None
+    is_window: bool = False
 
 
 def operated(operator: str, state: State, condition: str = "") -> Asked:
@@ -80,7 +92,8 @@ class Answers(Conditions):
         return Asked(Answer("now", state), is_formula=is_change, settled=self.settled.get(state.text))
 
     def within(self, state: State, duration: Duration) -> Asked | list[Asked]:
-        state = self.settled.get(state.text, state)
+        is_typed = any(state.text in (f"begins {name}", f"ends {name}") for name in self.edges)
+        state = state if is_typed else self.settled.get(state.text, state)
         if state.text.startswith("times("):
             self.limits.append(
                 f"`{state.text}` counts from the first step on: write `times_within(p, {duration.text})` to count in "
@@ -152,7 +165,7 @@ class Answers(Conditions):
 
     def window_before(self, state: State, window: tuple[Duration, Duration]) -> Asked | None:
         last, first = window
-        steps, length = self.steps(last), _difference(last, first)
+        steps, length = self.steps(last), difference(last, first)
         if length is None:
             return None
         is_known = last.is_steps or bool(self._step_s)
@@ -188,18 +201,11 @@ class Answers(Conditions):
 
     def window_after(self, state: State, window: tuple[Duration, Duration]) -> Asked | list[Asked] | None:
         first, last = window
-        length = _difference(first, last)
+        length = difference(first, last)
         if length is None or is_negative(state):
             return None
         if not 0 < self.steps(first) <= MOST_STEPS or self.steps(length) > _LONGEST_WINDOW:
-            before = round(self.steps(last)) - 1
-            if self._step_s and before > 0:
-                self.limits.append(
-                    f"a clause that looks {last.text} ahead has too many states; if the event e does not come again "
-                    f"within {last.text}, this one looks back: `keep ends (once within {before} steps e) implies once "
-                    f"within {length.text} {state.at(ATOM)}`"
-                )
-            return None
+            return None  # it needs too many states
         text = f"next after {first.text} eventually within {length.text} {state.at(ATOM)}"
         return Asked(Answer("now", State(text)), is_formula=True)
 
@@ -342,7 +348,7 @@ def is_negative(state: State) -> bool:
     return state.text.startswith("not ") or " is not " in state.text or " != " in state.text
 
 
-def _difference(shorter: Duration, longer: Duration) -> Duration | None:
+def difference(shorter: Duration, longer: Duration) -> Duration | None:
     """Return how much longer a time is than another; None if they have different units, or it is not."""
     if shorter.unit != longer.unit:
         return None

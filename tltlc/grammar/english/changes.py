@@ -176,8 +176,14 @@ class Changes(Rules):
         of_step = _only(found)
         if whole is None or of_step is None:
             return found
+        before = made.compared_with(f"value_at(previous({made.term.text}), {begun.text})")
+        earlier = None
+        if before is not None:
+            earlier = _only(self._implied_by(begun, [replace(answers[0], answer=replace(answer, state=before))]))
+        known = "if it is compared with its value at the step before"
         return [
             replace(whole, condition=f"if it is compared with its value at `{begun.text}`"),
+            *([replace(earlier, condition=known)] if earlier is not None else []),
             replace(of_step, condition="if it must change so much from one step to the next"),
         ]
 

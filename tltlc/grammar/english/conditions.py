@@ -33,6 +33,7 @@ class Conditions(Quantities):
         self.is_before = False
         """Whether the sentence says `again`."""
         self.is_coming = False
+        self.edges: frozenset[str] = frozenset()
         """Whether the sentence says `comes`."""
         self._since: dict[str, tuple[State, State]] = {}
         """Maps the texts of conditions such as `a since the last b` to a and b."""

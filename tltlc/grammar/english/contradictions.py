@@ -11,6 +11,7 @@ from typing import Final
 
 from tltlc.grammar.mistakes.sentences.validity import parsed_clause
 from tltlc.grammar.tree import BinaryExpr, CallExpr, Expr, GroupExpr, IsExpr, NameExpr, NumberExpr, Unary
+from tltlc.grammar.walk import operands
 
 Literals = frozenset[tuple[str, bool]]
 """Conditions, as they are written, and whether they hold."""
@@ -18,12 +19,37 @@ _POSITIVE: Final = {
     "<": ("<", True), ">=": ("<", False), ">": (">", True), "<=": (">", False), "==": ("==", True), "!=": ("==", False),
 }  # fmt: skip
 """Maps the signs of comparisons to one of the two that are opposites, and whether it is the same."""
+_COUNTS: Final = ("times", "times_since", "times_within")
 _NONE: Literals = frozenset()
 
 
 def forbids_its_event(clauses: Sequence[str]) -> bool:
     """Whether one of some clauses asks for a condition and its negation at one step."""
     return any(_contradicts_itself(clause) for clause in clauses)
+
+
+def has_empty_option(clause: str) -> bool:
+    """Whether an answer is `a or b`, of which a contradicts the condition: `keep begins p implies not p or q`."""
+    tree = parsed_clause(clause)
+    rule = tree.value if tree is not None else None
+    if not isinstance(rule, BinaryExpr) or rule.op != "implies":
+        return False
+    known = _at_this_step(rule.left, clause)
+    options = operands(rule.right, "or", through_brackets=True)
+    return len(options) > 1 and any(_differ(known, _at_this_step(option, clause)) for option in options)
+
+
+def behind_its_event(clause: str) -> str:
+    """Return `keep a implies weak_next always for 5 s not a` for the rule that counts from a itself; "" for others."""
+    tree = parsed_clause(clause)
+    rule = tree.value if tree is not None else None
+    if not isinstance(rule, BinaryExpr) or rule.op != "implies" or not isinstance(rule.right, Unary):
+        return ""
+    answer = rule.right
+    if answer.op != "G" or answer.bound is None or not _contradicts_itself(clause):
+        return ""
+    later = f"{clause[: answer.span.start]}weak_next {clause[answer.span.start :]}"
+    return "" if _contradicts_itself(later) else later
 
 
 def _contradicts_itself(clause: str) -> bool:
@@ -97,7 +123,7 @@ def _counted(expr: Expr, clause: str) -> tuple[str, float] | None:
     if not isinstance(inner, BinaryExpr) or inner.op != ">=" or not isinstance(inner.right, NumberExpr):
         return None
     call = inner.left
-    if not isinstance(call, CallExpr) or call.name != "times" or len(call.arguments) != 1:
+    if not isinstance(call, CallExpr) or call.name not in _COUNTS:
         return None
     value = call.arguments[0].value
     return clause[value.span.start : value.span.end], inner.right.value

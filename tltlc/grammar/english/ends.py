@@ -9,7 +9,7 @@ from tltlc.grammar.english.rules import Reading
 from tltlc.grammar.mistakes.sentences.states import AND, ATOM, OR, State, joined
 from tltlc.grammar.mistakes.sentences.validity import parsed_clause
 from tltlc.grammar.mistakes.sentences.words import Words, phrases
-from tltlc.grammar.tree import BinaryExpr, Expr, Unary
+from tltlc.grammar.tree import BinaryExpr, CallExpr, Expr, Unary
 from tltlc.grammar.walk import parts
 
 _EXCUSES: Final = phrases("unless", "except when", "except if", "except while", "except during", "except")
@@ -22,6 +22,8 @@ _MEANWHILE: Final = phrases(
     "within that time", "in that time", "during that time", "within this time", "in this time", "meanwhile",
     "in the meantime", "in meantime", "in between", "by then",
 )  # fmt: skip
+_PAST: Final = ("once ", "historically ", "previously ")
+_WINDOWS: Final = ("highest_within", "lowest_within", "times_within", "total_time_within", "previous")
 _LOOSE: Final = {"and": AND, "or": OR, "implies": OR + 1, "iff": OR + 1, "then": OR + 1, "since": AND}
 
 
@@ -84,6 +86,36 @@ def with_end(reading: Reading, end: End, condition: State) -> Reading | None:
     said = [part for part in (reading.condition, changed.where) if part]
     joint = ", and ".join((*said[:1], *(part.removeprefix("if ") for part in said[1:])))
     return Reading((changed.clause,), joint)
+
+
+def with_last_seconds(reading: Reading, excuse: State) -> list[Reading]:
+    """Return a reading of `health >= highest_within(health, 2 s) - 5 unless a`, and that in which a excuses the 2 s.
+
+    Only the reading itself if its clause does not end in the excuse, or is about no last seconds.
+    """
+    clause = reading.clauses[0]
+    time, said = last_seconds(clause), excuse.at(ATOM)
+    kept, forbidden = f" or {said}", f" and {excuse.negated().at(ATOM)}"
+    implied = f" implies {excuse.at(OR)}"
+    end = next((each for each in (kept, forbidden, implied) if clause.endswith(each)), "")
+    if reading.condition or reading.clauses[1:] or not time or not end or excuse.text.startswith(_PAST):
+        return [reading]
+    wide = f"once within {time} {said}"
+    longer = {kept: f" or {wide}", forbidden: f" and not {wide}", implied: f" implies {wide}"}[end]
+    return [
+        Reading((clause.removesuffix(end) + longer,), f"if it excuses what comes up to {time} later, too"),
+        Reading((clause,), f"if `{excuse.text}` counts at its own step alone"),
+    ]
+
+
+def last_seconds(clause: str) -> str:
+    """Return the time of the only window of the last seconds in a clause: 2 s of `highest_within(x, 2 s)`; else ""."""
+    tree = parsed_clause(clause)
+    if tree is None or isinstance(tree.value, tuple):
+        return ""
+    windows = [part for part in parts(tree.value) if isinstance(part, CallExpr) and part.name in _WINDOWS]
+    times = [call.arguments[1].value.span for call in windows if call.arguments[1:]]
+    return clause[times[0].start : times[0].end] if len(times) == 1 else ""
 
 
 @record

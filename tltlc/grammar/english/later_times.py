@@ -6,11 +6,11 @@ from math import floor
 from typing import Final
 
 from tltlc.core.record import replace
-from tltlc.grammar.english.answers import MOST_STEPS, Asked, is_negative
+from tltlc.grammar.english.answers import MOST_STEPS, Asked, LateWindow, difference, is_negative
 from tltlc.grammar.english.events import Event, as_state
 from tltlc.grammar.english.intervals import apart, is_edge
 from tltlc.grammar.english.quantities import Duration
-from tltlc.grammar.english.rules import Reading, Rules, When, are_simple, begun_text
+from tltlc.grammar.english.rules import Reading, Rules, When, all_readings, are_simple, begun_text
 from tltlc.grammar.mistakes.declared_names import DeclaredNames
 from tltlc.grammar.mistakes.sentences.answers import Answer
 from tltlc.grammar.mistakes.sentences.states import AND, ATOM, OR, State, joined
@@ -37,7 +37,7 @@ class LaterTimes(Rules):
         """Return the answers of `b between 1 s and 2 s later`; `not b` may ask for one step, or for all of them."""
         if not is_negative(state):
             asked = super().window_after(state, window)
-            return asked if asked is not None else self._window_with_none_before(state, window)
+            return asked if asked is not None else self._late_window(state, window)
         denied = state.negated()
         asked = super().window_after(denied, window) if 0 < self.steps(window[0]) <= MOST_STEPS else None
         if not isinstance(asked, Asked):
@@ -49,20 +49,49 @@ class LaterTimes(Rules):
             replace(asked, answer=Answer("now", once), condition="if one step is enough"),
         ]
 
-    def _window_with_none_before(self, state: State, window: Window) -> Asked | None:
-        """Return the answer of `b between 1 s and 3 s later` that forbids an earlier b, which needs fewer states."""
-        if state.level > ATOM or is_edge(state) or not 0 < self.steps(window[0]) < self.steps(window[1]):
+    def _late_window(self, state: State, window: Window, excuse: State | None = None) -> list[Asked] | None:
+        """Return the answers of `b between 1 s and 3 s later` that need few states.
+
+        One forbids an earlier b; the other looks back.
+        """
+        if state.level > ATOM or not 0 < self.steps(window[0]) < self.steps(window[1]):
             return None
-        free = f"always for {window[0].text} {state.negated().at(ATOM)}"
-        in_time = f"eventually within {window[1].text} {state.at(ATOM)}"
-        condition = f"if `{state.text}` must not come earlier"
-        return Asked(Answer("now", State(f"({free}) and {in_time}", AND)), condition, is_formula=True)
+        b = state.negated().at(ATOM)
+        free = f"(always for {window[0].text} {b})"
+        if excuse is not None:
+            free = f"({free} or ({b} until {excuse.at(ATOM)}))"
+        goal = state if excuse is None else joined([state, excuse], "or")
+        strict = State(f"{free} and eventually within {window[1].text} {goal.at(ATOM)}", AND)
+        answer = Answer("now", strict)
+        late = LateWindow(state, window, excuse)
+        return [
+            Asked(answer, f"if `{state.text}` must not come earlier", is_formula=True, is_window=True),
+            Asked(answer, f"if `{state.text}` may come earlier", late_window=late),
+        ]
+
+    def _looking_back(self, event: Event, asked: Asked) -> Reading | None:
+        """Return the rule of `when a, b between 1 s and 3 s later` that looks back from the end of that time."""
+        start, late = as_state(event), asked.late_window
+        assert late is not None
+        least, most = late.window
+        before, length = round(self.steps(most), 6) - 1, difference(least, most)
+        if start is None or start.level > ATOM or length is None or not self._step_s or not before.is_integer():
+            return None
+        came = State(f"once within {length.text} {late.state.at(ATOM)}")
+        if late.excuse is not None:
+            came = joined([came, State(f"once within {most.text} {late.excuse.at(ATOM)}")], "or")
+        clause = f"keep ends (once within {int(before)} steps {start.at(ATOM)}) implies {came.text}"
+        return Reading((clause,), f"{asked.condition}, and `{start.text}` does not come again within {most.text}")
 
     def window_unless(self, state: State, window: Window, event: Event) -> list[Asked] | None:
         """Return the readings of `b between 1 s and 2 s later unless c`."""
         exception = as_state(event)
         if exception is None or not are_simple(state, exception) or is_negative(state):
             return None
+        if state == exception or begun_text(state) == begun_text(exception):
+            return None
+        if super().window_after(state, window) is None:
+            return self._late_window(state, window, exception)
         either = super().window_after(joined([state, exception], "or"), window)
         alone = None if either is None else super().window_after(state, window)
         if not isinstance(either, Asked) or not isinstance(alone, Asked):
@@ -182,6 +211,13 @@ class LaterTimes(Rules):
         self._or_held[either.text] = held, other
         return Asked(Answer("now", either))
 
+    def now_or_held(self, other: State, state: State, duration: Duration) -> Asked | None:
+        """Return the answer of `c or b for at least 2 s`, if b has lasted until then."""
+        if duration.is_steps or not are_simple(other, state):
+            return None
+        asked = self.held_before_or(state, duration, other)
+        return replace(asked, condition=f"if `{state.text}` must have held for {duration.text} by then")
+
     def held_until_then(self, state: State, duration: Duration) -> Asked | None:
         """Return the answer of `when a, b for at least 2 s` that looks back, where b has lasted until then."""
         if state.level > ATOM or is_edge(state):
@@ -207,25 +243,36 @@ class LaterTimes(Rules):
         begun, lasted = as_state(event), self._lasted.get(answers[0].answer.state.text)
         if begun is not None and lasted is not None and begun.text in (lasted.text, begun_text(lasted)):
             return None
-        is_ended = lasted is not None and begun is not None and begun_text(lasted.negated()) == begun_text(begun)
+        is_ended = False
+        if lasted is not None and begun is not None:
+            is_ended = begun_text(begun) in (begun_text(lasted.negated()), f"ends {lasted.at(ATOM)}")
         if is_ended and not answers[1:]:
             # It ends at this step, so the time is that up to the step before.
             asked = answers[0]
             held, *others = self._or_held.get(asked.answer.state.text, (asked.answer.state,))
             before = joined([State(f"previously {held.at(ATOM)}"), *others], "or")
-            answers = [replace(asked, answer=replace(asked.answer, state=before), condition="")]
+            condition = asked.condition if others else ""
+            answers = [replace(asked, answer=replace(asked.answer, state=before), condition=condition)]
         if answers[0].late is not None:
             return self._late(event, answers[0], answers[0].late)
+        if any(asked.late_window for asked in answers):
+            return None if answers[1:] else self._looking_back(event, answers[0])
         return super().implies(_beginning(event, answers), answers)
 
     def first(self, when: When, event: Event, answers: list[Asked]) -> _Found:
         if answers[0].late is not None:
             return self._late(event, answers[0], answers[0].late)
+        if any(asked.late_window for asked in answers):
+            return None if answers[1:] else self._looking_back(event, answers[0])
         return super().first(when, _beginning(event, answers), answers)
 
     def last(self, answers: list[Asked], when: When, event: Event) -> _Found:
+        if answers[0].is_window and not answers[1:]:
+            return self.first(when, event, answers)
         if answers[0].late is not None:
             return self._late(event, answers[0], answers[0].late)
+        if any(asked.late_window for asked in answers):
+            return None if answers[1:] else self._looking_back(event, answers[0])
         return super().last(answers, when, _beginning(event, answers))
 
     # Windows after an event.
@@ -235,7 +282,9 @@ class LaterTimes(Rules):
 
     def window_no_sooner(self, state: State, window: Window) -> list[Asked] | None:
         """Return the readings of `b no sooner than 1 s and no later than 4 s`: an earlier b, too, or none."""
-        asked, least = self.window_after(state, window), window[0]
+        asked, least = super().window_after(state, window), window[0]
+        if asked is None and not is_negative(state):
+            return self._late_window(state, window)
         if not isinstance(asked, Asked) or not round(self.steps(least), 6).is_integer():
             return None
         free = f"always for {least.text} {state.negated().at(ATOM)}"
@@ -247,7 +296,8 @@ class LaterTimes(Rules):
 
     def window_of_event(self, state: State, least: Duration, most: Duration, event: Event) -> _Found:
         asked = self.window_after(state, (least, most))
-        return self.first("when", event, [asked]) if isinstance(asked, Asked) else None
+        answers = asked if isinstance(asked, list) else [asked] if asked is not None else []
+        return [reading for one in answers for reading in all_readings(self.first("when", event, [one]))]
 
     def strict_window_of_event(self, state: State, window: Window, event: Event) -> _Found:
         readings = [self.first("when", event, [asked]) for asked in self.window_no_sooner(state, window) or ()]

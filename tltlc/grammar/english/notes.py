@@ -32,7 +32,7 @@ _OF_CALLS: Final = {
     "value_at": "`{call}` is the value at the first step until the first step with `{1}`",
 }
 """What the functions of the trace so far are, where a reader may expect something else."""
-_CHANGES: Final = (" != previous(", " > previous(", " < previous(")
+_CHANGES: Final = (" != previous(", " > previous(", " < previous(", " or ends (")
 """What stands in conditions of a number that changes."""
 _COUNTS: Final = ("times", "times_since", "times_within")
 _OF_EDGES: Final = ("times", "times_within")
@@ -74,7 +74,7 @@ def _notes(expression: Expr, source: SourceFile, step_s: float) -> Iterator[tupl
             if part.name == "times_within" and (window := _window_note(part, source, step_s)):
                 yield window, ("times_within(",)
             if part.name in _COUNTS and any(sign in arguments[0] for sign in _CHANGES):
-                yield f"`{arguments[0]}` at steps in a row counts once", (" != previous(",)
+                yield f"`{arguments[0]}` at steps in a row counts once", (" != previous(", " or ends (")
         elif isinstance(part, Unary) and part.op == "begins" and id(part) not in events:
             inner = source.slice(part.operand.span)
             yield f"`begins {inner}` holds only at the first step of `{inner}`, and not at those after it", _BEGINNINGS

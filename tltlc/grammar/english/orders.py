@@ -188,13 +188,22 @@ class Orders(Rules):
         never = f"if `{avoided.text}` must hold at no step of play"
         return [Reading((f"reach {goal}", f"avoid {avoided.text}"), never), *between]
 
+    def held_last_without(self, goals: Goals, state: State, duration: Duration, avoided: State) -> Reading | None:
+        """Return the goal of `reach a then b for 2 s without c`, if c is about these 2 s alone."""
+        if duration.is_steps or not are_simple(state, avoided) or state == avoided:
+            return None
+        held = f"time_holding({joined([state, avoided.negated()], 'and').text}) >= {duration.text}"
+        goal = " then ".join([*(each.at(OR) for each in goals.states), held])
+        return Reading((f"reach {goal}",), f"if `{avoided.text}` must not hold in those {duration.text}")
+
     def goals_without_between(self, goals: Goals, avoided: State) -> _Readings | None:
         """Return the readings of `reach a then b with no c in between`: the first and the last step count, or not."""
         first, last = goals.states[0], goals.states[-1]
         if len(goals.states) < 2 or any(state.text == avoided.text for state in goals.states):
             return None
         free = [joined([state, avoided.negated()], "and") for state in goals.states]
-        which, between = f"`{first.text}` to `{last.text}`", f"`{first.text}` and `{last.text}`"
+        some = "one with " * _may_last(first)
+        which, between = f"{some}`{first.text}` to `{last.text}`", f"`{first.text}` and `{last.text}`"
         return [
             Reading((_without(free, avoided),), f"if no step from {which} may have it, these two included"),
             Reading((_without([first, *free[1:-1], last], avoided),), f"if only no step between {between} may have it"),

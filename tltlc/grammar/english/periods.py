@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from typing import Final
 
 from tltlc.core.record import replace
@@ -307,6 +308,24 @@ class Periods(Totals):
         assert most is not None
         return Reading((at_next, f"keep once {so_far} implies {most.text}"))
 
+    def counts_twice(self, state: State, first: str, least: str, second: str, most: str) -> tuple[Counted, Counted]:
+        return Counted(state, first, least), Counted(state, second, most)
+
+    def numbers_twice(self, first: str, least: Term, second: str, most: Term, term: Term) -> tuple[Counted, Counted]:
+        return self.counts_twice(State(term.text), first, least.text, second, most.text)
+
+    def counts_between(self, counts: tuple[Counted, Counted], span: Span) -> Reading | None:
+        """Return the rules of `a at least once and at most 3 times between two b`."""
+        return _both_of([self.count_between(counted, span) for counted in counts])
+
+    def counts_from_to(self, counts: tuple[Counted, Counted]) -> Reading | None:
+        """Return the rules of `a at least once and at most 3 times`, of which the first is a goal."""
+        least, most = counts
+        if least.sign not in (">", ">=") or most.sign not in ("<", "<="):
+            return None
+        goal = Reading((f"reach times({least.state.text}) {least.sign} {least.number}",))
+        return _both_of([goal, self.limit_count(most)])
+
     # Answers to what happens so often.
 
     def number_counted(self, number: Term, term: Term) -> Counted:
@@ -448,3 +467,11 @@ def _avoided(counted: Counted) -> Counted | None:
 def _with_name(state: State, name: str) -> State:
     """Return a condition with the name of an event for `it`."""
     return State(state.text.replace(IT, name), state.level, state.opposite.replace(IT, name))
+
+
+def _both_of(rules: Sequence[_Found]) -> Reading | None:
+    """Return the clauses of several rules as one reading; None if one of them has none, or several readings."""
+    readings = [all_readings(rule) for rule in rules]
+    if any(len(known) != 1 or known[0].condition for known in readings):
+        return None
+    return Reading(tuple(clause for (known,) in readings for clause in known.clauses))

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import re
 from typing import Final, Literal
 
-from tltlc.core.record import record
+from tltlc.core.record import record, replace
 from tltlc.grammar.english.terminals import Term
 from tltlc.grammar.mistakes.declared_names import DeclaredNames
 from tltlc.grammar.mistakes.sentences.states import AND, ATOM, OR, State, joined
@@ -392,10 +393,22 @@ def counted_by(times: Term) -> State | None:
     return State(inner[:-1].strip()) if name == "times" and bracket else None
 
 
+_OPEN: Final = re.compile(r"\b(times|total_time)\(([^(),]+)\)")
+"""A count or a time that has no greatest value."""
+_MOST: Final = {"times": "1000", "total_time": "10 min"}
+
+
+def _with_most(call: re.Match[str]) -> str:
+    return f"{call[1]}({call[2]}, {_MOST[call[1]]})"
+
+
 def comparison(left: Number, sign: str, right: Number) -> State | None:
     """Return a comparison in the language, which has no equality of real numbers; None of a number with itself."""
     if left.text == right.text:
         return None
+    if _OPEN.search(left.text) and _OPEN.search(right.text):
+        # Both need a greatest value.
+        left, right = (replace(side, text=_OPEN.sub(_with_most, side.text)) for side in (left, right))
     if sign in ("==", "!="):
         return _equality(left, sign, right)
     return State(

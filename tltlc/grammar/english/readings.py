@@ -6,13 +6,13 @@ from collections.abc import Sequence
 from itertools import islice, pairwise, product
 from typing import Any, Final
 
-from tltlc.core.record import record
+from tltlc.core.record import record, replace
 from tltlc.grammar.english.alternatives import Alternatives
 from tltlc.grammar.english.arguments import with_read_arguments
 from tltlc.grammar.english.bounds import Bounds
-from tltlc.grammar.english.contradictions import forbids_its_event
+from tltlc.grammar.english.contradictions import behind_its_event, forbids_its_event, has_empty_option
 from tltlc.grammar.english.counts_since import CountsSince
-from tltlc.grammar.english.ends import end_of, with_end
+from tltlc.grammar.english.ends import end_of, with_end, with_last_seconds
 from tltlc.grammar.english.events import Crossing, as_state
 from tltlc.grammar.english.exceptions import Exceptions
 from tltlc.grammar.english.extremes import Extremes
@@ -95,6 +95,19 @@ class Sentence:
 
 def sentence(words: Words) -> Sentence:
     """Return the readings of a sentence; none if it is no sentence of the grammar.
+
+    An exception from a limit on the last seconds excuses its own step, or those seconds.
+    """
+    read = _whole_sentence(words)
+    end = end_of(words) if len(read.readings) == 1 else None
+    excuse = _said_state(end.condition) if end is not None and end.excuses and end.time is None else None
+    if excuse is None:
+        return read
+    return replace(read, readings=tuple(with_last_seconds(read.readings[0], excuse)))
+
+
+def _whole_sentence(words: Words) -> Sentence:
+    """Return the readings of a sentence.
 
     Several lines may be one sentence, or one for each line. Without lark, which the playground does not
     load, no sentence is read.
@@ -243,13 +256,22 @@ def sentence_of(parser: SentenceParser, terminals: Sequence[Term], words: Words)
     rules.is_again = any(term.text == "again" for term in terminals)
     rules.is_before = any(term.text == "before" for term in terminals)
     rules.is_coming = any(term.text in _COMING for term in terminals)
+    rules.edges = frozenset(
+        name.text for edge, name in pairwise(terminals) if edge.text in ("begins", "ends") and name.kind in _FIRST
+    )
     for reading in _values(tree.children[0], rules):
         unique.setdefault(reading.clauses, reading)
     if len(unique) > _MOST_READINGS:
         return Sentence()
-    for clauses in list(unique):
+    empty = [key for key in unique if len(key) == 1 and has_empty_option(key[0])]
+    for key in empty if len(empty) < len(unique) else ():
+        del unique[key]
+    for clauses, reading in list(unique.items()):
         if forbids_its_event(clauses):
             del unique[clauses]
+            later = behind_its_event(clauses[0]) if len(clauses) == 1 else ""
+            if later:
+                unique[later,] = replace(reading, clauses=(later,))
     return Sentence(tuple(unique.values()), next(iter(rules.limits), ""))
 
 

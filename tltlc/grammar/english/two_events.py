@@ -67,6 +67,35 @@ class TwoEvents(Rules):
             return None
         return Reading((f"keep times_since({first.text}, {begun_text(answer)}) <= 1",))
 
+    def first_event(self, state: State) -> tuple[State, int]:
+        return state, 1
+
+    def nth_event(self, number: str, state: State) -> tuple[State, int]:
+        return state, int(number)
+
+    def before_next_of_nth(self, event: tuple[State, int], answer: State, again: State) -> Reading | None:
+        """Return the rule of `after the third a, b before the next a`."""
+        state, number = event
+        if state != again or not are_simple(state, answer) or state == answer:
+            return None
+        came = joined([answer, State(f"times({state.text}) >= {number}")], "and")
+        return Reading((f"keep begins (times({state.text}) >= {number + 1}) implies once {came.at(ATOM)}",))
+
+    def answered_before_next(self, state: State, answer: State, again: State) -> Reading | None:
+        return self.followed_before_next(state, answer, again)
+
+    def avoid_around(self, state: State, duration: Duration, event: State) -> Reading | None:
+        """Return the rules of `no a within 3 s before or after b`, both of which look back."""
+        if not are_simple(state, event) or begun_text(state) == begun_text(event):
+            return None
+        recent = f"once within {duration.text}"
+        return Reading(
+            (
+                f"avoid {state.text} and {recent} {event.at(ATOM)}",
+                f"avoid {event.text} and {recent} {state.at(ATOM)}",
+            )
+        )
+
     def avoid_during_and_after(self, state: State, during: State, duration: Duration, after: State) -> Reading | None:
         """Return the rule of `no a while b or within 2 s after b`."""
         if during != after or not are_simple(state, during):
@@ -144,6 +173,22 @@ class TwoEvents(Rules):
                 is_formula=True,
             ),
         ]
+
+    def all_denied(self, *denied: State) -> list[Asked] | None:
+        """Return the answers of `never b and never c`: up to that step, or from it on."""
+        if not are_simple(*denied):
+            return None
+        so_far = joined([State(f"not once {never.at(ATOM)}") for never in denied], "and")
+        from_now = joined([never.negated() for never in denied], "and")
+        return [
+            Asked(Answer("now", so_far), "if it is about what came up to that step"),
+            Asked(Answer("now", State(f"always {from_now.at(ATOM)}")), "if it is about what comes from that step on",
+                  is_formula=True),
+        ]  # fmt: skip
+
+    def never_and(self, never: State, state: State) -> list[Asked] | None:
+        """Return the answers of `never b and c`, if c must hold: no b up to that step, or from it on."""
+        return self.and_never(state, never)
 
     def only_when_never(self, state: State, never: State) -> Reading | None:
         """Return the rule of `a only if never b`."""

@@ -58,6 +58,8 @@ def condition_behind_rule(failure: ParseFailure) -> Diagnostic | None:
     if not timed:
         return failure.error("TLT0101", title, f"write `{readings[0]}`")
     first, second = readings
+    if is_exception and event == f"begins {negated}":
+        return failure.error("TLT0101", title, f"write `{second}`")  # the event excludes the exception
     help_ = (
         f"write `{first}` if `{condition}` is about the step with `{event}`, `{second}` if it is about that of "
         f"`{state}`"

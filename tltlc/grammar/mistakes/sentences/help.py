@@ -10,6 +10,7 @@ from tltlc.diagnostics.diagnostic import Diagnostic, Fix, replacement_fix
 from tltlc.grammar.english.clauses import plain_text
 from tltlc.grammar.english.contradictions import forbids_its_event
 from tltlc.grammar.english.doubts import is_english_alone, takes_one_reading
+from tltlc.grammar.english.ends import last_seconds
 from tltlc.grammar.english.gaps import sentence_with_gaps
 from tltlc.grammar.english.notes import form_notes, notes, reading_notes
 from tltlc.grammar.english.readings import sentence, sentence_forms, unread_rule
@@ -64,6 +65,7 @@ _ENGLISH_ALONE: Final = (
         "in first",
         "in the first",
         "of start",
+        "at the end",
         "of the start",
     ),
 )
@@ -203,7 +205,8 @@ def _may_miss(failure: ParseFailure, fix: Fix, words: Words) -> bool:
     It compares a value with that of the step before from some step on, or while something holds, and the first such
     step may not be meant. Or it says how long something lasts `unless` something else comes, which may also end that
     time, or `after` something, which may itself last. Or it counts what comes before the condition of its rule, too,
-    or leaves a condition out of what it counts, or of its rule. Or it asks for a step of what play must finish with.
+    or leaves a condition out of what it counts, or of its rule. Or an exception may excuse the last seconds. Or it
+    asks for a step of what play must finish with.
     """
     text = mended(failure, fix)
     answer = text.partition(" implies ")[2]
@@ -222,6 +225,7 @@ def _may_miss(failure: ParseFailure, fix: Fix, words: Words) -> bool:
         or " next after " in text
         or (" or " in text.partition("time_holding(")[2].partition(") ")[0] and words.find(phrases("or")) is not None)
         or (words.find(_DENIED_TWICE) is not None and " and not " in text)
+        or (words.find(UNLESS) is not None and bool(last_seconds(text)))
         or is_compared
         or is_counted
         or is_joined
