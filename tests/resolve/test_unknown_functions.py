@@ -6,7 +6,7 @@ import pytest
 
 from tltlc.core.source import SourceFile
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
-from tltlc.pipeline import compile_source
+from tltlc.pipeline import compile_source, compile_text
 
 HEAD = "clock 10 Hz\nsignal a: bool\nsignal x in [0, 100]\nsignal turn: int in [0, 9]\nsignal mode: (idle, alert)\n"
 
@@ -130,11 +130,18 @@ def test_a_formula_at_the_step_before_is_no_number(argument: str) -> None:
 @pytest.mark.parametrize(
     ("rule", "said"),
     [
-        ("keep times(a then within 2 s (x > 3), 9) <= 2", "`(x > 3) and once within 2 s a`"),
-        ("keep once (a then mode is idle) implies a", "`(mode is idle) and previously once a`"),
+        ("keep times(a then within 5 s (x > 3), 9) <= 2", "(x > 3) and previously once within 49 steps a"),
+        ("keep once (a then within 2 steps b) implies a", "b and previously once within 1 step a"),
+        ("keep once (a then within 1 steps b) implies a", "b and previously a"),
+        ("keep once (a then mode is idle) implies a", "(mode is idle) and previously once a"),
+        ("keep previously (a then b then a)", "a and previously once (b and previously once a)"),
     ],
 )
 def test_a_sequence_in_the_past_is_told_at_its_last_step(rule: str, said: str) -> None:
-    error = first_error(f"{HEAD}spec s {{ {rule} }}")
+    text = f"{HEAD}signal b: bool\nspec s {{ {rule} }}"
+    error = first_error(text)
     assert error.code == "TLT0320"
     assert said in (error.help or "")
+    (edit,) = error.fixes[0].edits
+    assert edit.text == said
+    compile_text(text[: edit.span.start] + edit.text + text[edit.span.end :])

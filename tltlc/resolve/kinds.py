@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import re
 from typing import Literal
 
+from tltlc.core.source import Span
 from tltlc.diagnostics.diagnostic import Fix, replacement_fix
 from tltlc.grammar import past_words, tree
 from tltlc.grammar.keywords import CONDITIONS
@@ -28,6 +30,7 @@ _MOST_LETTERS = 4
 _MOST_NAMES = 5
 """The most entities that a message lists."""
 _MOST_HINTS = 50
+_SINCE = re.compile(r"\s+since\s+(?:the\s+)?(?:last\s+)?(\w+)")
 """After this many logged problems, unknown names get no suggestions, because finding them is slow."""
 _DECLARATIONS = {
     "predicate": "signal {name}: bool",
@@ -68,7 +71,13 @@ def lookup(use: NameExpr | CallExpr, env: Env, kinds: tuple[BindingKind, ...], n
         raise problem("TLT0201", title, source, span, advice=f"for the function, write `{form}`")
     if use.name == "time" and source.text[span.end :].lstrip().startswith("since "):
         advice = "`time_since` is one word: write it as in `time_since(p) < 5 s`"
-        raise problem("TLT0201", title, source, span, advice=advice)
+        found: tuple[Fix, ...] = ()
+        event = _SINCE.match(source.text, span.end)
+        if event is not None and event[1] in env.scope.names:
+            text = f"time_since({event[1]})"
+            advice = f"`time_since` is one word: write `{text}`"
+            found = (replacement_fix(source, Span(span.start, event.end()), text),)
+        raise problem("TLT0201", title, source, span, advice=advice, fixes=found)
     if use.name == "time" and isinstance(use, NameExpr):
         advice = (
             "`total_time(true)` is the time so far; for a time that the game records, declare it: "

@@ -59,6 +59,7 @@ _WITH_LENGTH: Final = ("times_within", "total_time_within", "highest_within", "l
 """The functions of the last seconds."""
 _MOST_NESTED: Final = 16
 """The most functions of the past that may stand inside each other."""
+_TWO_STEPS: Final = 2
 _LONGEST: Final = 10_000
 """About the most letters of a formula or a number that an operator or function of the past may have as its operand.
 
@@ -163,7 +164,8 @@ def _earlier(bound: TemporalInterval | None, env: Env) -> str:
     if env.context.clock_varies:
         return f"once within {env.scope.source.slice(bound.high.span)}"
     steps = samples(bound.high, env)
-    return f"previously once within {steps - 1} steps" if steps > 1 else "previously"
+    unit = "step" if steps == _TWO_STEPS else "steps"
+    return f"previously once within {steps - 1} {unit}" if steps > 1 else "previously"
 
 
 def _check_operand(operand: Formula, expr: Expr, env: Env) -> None:

@@ -58,7 +58,9 @@ def _contradicts_itself(clause: str) -> bool:
     if not isinstance(rule, BinaryExpr):
         return False
     if rule.op == "implies":
-        return _differ(_at_this_step(rule.left, clause), _at_this_step(rule.right, clause))
+        counted = _count(rule.left, clause)
+        come = _NONE if counted is None else frozenset({(counted[0], True)})
+        return _differ(_at_this_step(rule.left, clause) | come, _at_this_step(rule.right, clause))
     if rule.op in ("U", "W"):
         counted = _counted(rule.right, clause)
         return counted is not None and counted[1] > 1 and (counted[0], False) in _at_this_step(rule.left, clause)
@@ -120,7 +122,18 @@ def _counted(expr: Expr, clause: str) -> tuple[str, float] | None:
     if isinstance(inner, Unary) and inner.op == "once" and inner.bound is None:
         operand = inner.operand.inner if isinstance(inner.operand, GroupExpr) else inner.operand
         return clause[operand.span.start : operand.span.end], 1
-    if not isinstance(inner, BinaryExpr) or inner.op != ">=" or not isinstance(inner.right, NumberExpr):
+    if not isinstance(inner, BinaryExpr):
+        return None
+    return _count(inner, clause)
+
+
+def _count(inner: Expr, clause: str) -> tuple[str, float] | None:
+    """Return p and n of `times(p) >= n`, which p makes true."""
+    if (
+        not isinstance(inner, BinaryExpr)
+        or inner.op not in (">", ">=", "==")
+        or not isinstance(inner.right, NumberExpr)
+    ):
         return None
     call = inner.left
     if not isinstance(call, CallExpr) or call.name not in _COUNTS:

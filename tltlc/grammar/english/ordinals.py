@@ -21,6 +21,10 @@ class Ordinals(Rules):
     def at_ordinal(self, event: State, answers: list[Asked]) -> Reading | list[Reading] | None:
         return self.first("when", event, answers)
 
+    def first_time(self, state: State, answers: list[Asked]) -> Reading | list[Reading] | None:
+        event = self.first_of_all(state)
+        return None if event is None else self.at_ordinal(event, answers)
+
     def nth_of_all(self, number: str, state: State) -> State | None:
         """Return the step of `the third a`."""
         return State(f"begins (times({state.text}) >= {number})") if are_simple(state) else None

@@ -44,6 +44,8 @@ _EMPTY: Final = frozenset("it he she they we you your my has have had to do does
 """Words that say nothing by themselves."""
 _CONTENT: Final = frozenset((*_FIRST, UNKNOWN, "VALUE", "SIGN", "UNIT", "TIME_UNIT"))
 """The terminals that a sentence which is understood has in conditions and times alone."""
+_TELLING: Final = frozenset("first second third fourth fifth exactly half average".split())
+"""Words that no form says, and without which a sentence says something else."""
 _LASTING: Final = frozenset("stays stay remains remain must should never".split())
 """Words of a condition alone that make it a rule for every step."""
 _VERBS: Final = phrases(
@@ -207,6 +209,8 @@ def sentence_forms(words: Words) -> tuple[Form, ...]:
         return ()
     if any(one.kind == "UNIT" and other.text in ("of", "time") for one, other in pairwise(terminals)):
         return ()  # a share of the time
+    if any(term.text in _TELLING for term in terminals):
+        return ()  # no form says the number of an event
     parts: list[Part] = []
     at = 0
     while at < len(terminals):

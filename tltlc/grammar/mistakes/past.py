@@ -127,6 +127,10 @@ def _postfix(failure: ParseFailure) -> Diagnostic | None:
         return suggest_rewrite(failure, start, end, text, title)
     if word in ("begins", "ends") and operand_end(tokens, at + 1) is None:
         title = f"{quote_token(failure.token)} stands before its formula"
+        name = text_of(failure, start, at)
+        known = declared_names(failure.source).names.get(name)
+        if known is not None and known.type == "int":
+            return suggest_rewrite(failure, start, at + 1, f"{name} != previous({name})", title)
         return suggest_rewrite(failure, start, at + 1, f"{word} {text_of(failure, start, at)}", title)
     if _is_before(failure, at):
         return _before_error(failure, at, text_of(failure, start, at))

@@ -15,6 +15,12 @@ BEFORE = f"clock 1 Hz\n{SIGNALS}"
         ("require a until eventually within 2 s b", "(a until b) and eventually within 2 s b"),
         ("require a until (eventually within 2 s b)", "(a until b) and eventually within 2 s b"),
         ("keep c implies not a weak_until eventually b", "not a weak_until b"),
+        ("require not a until (b then c)", "not a until (c and previously once b)"),
+        (
+            "keep c implies not a until (b then (c and b) then a)",
+            "not a until (a and previously once ((c and b) and previously once b))",
+        ),
+        ("require not a until (b then within 2 s c)", "c and once b"),
     ],
 )
 def test_an_until_that_ends_before_its_goal_gets_another_formula(clause: str, offered: str) -> None:
@@ -31,6 +37,15 @@ def test_the_offered_formula_asks_for_more() -> None:
     )
     assert ("", "b", "") in typed - offered
     assert ("a", "a", "b") in offered
+    assert offered < typed
+
+
+def test_the_offered_formula_ends_with_the_last_goal() -> None:
+    typed, offered = (
+        accepted_traces(block(f"require {formula}", before=BEFORE), "abc", 3)
+        for formula in ("not a until (b then c)", "not a until (c and previously once b)")
+    )
+    assert ("b", "a", "c") in typed - offered
     assert offered < typed
 
 
