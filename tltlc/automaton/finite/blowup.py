@@ -167,7 +167,13 @@ def bound_advice(bound: Bound) -> str:
         form = f"`keep p implies {bound.operator} {text} q`, also with `next` before `{bound.operator}`,"
     else:
         return shorten
-    return f"{form} needs no states if `p` and `q` are about one sample; otherwise {shorten}"
+    help_ = f"{form} needs no states if `p` and `q` are about one step each"
+    if bound.op == "F":
+        help_ += (
+            f"; for `keep p implies {bound.operator} {text} (q and (r until s))`, write that, and "
+            "`keep q implies (r until s)`"
+        )
+    return f"{help_}; otherwise {shorten}"
 
 
 def _times_in_sequence(part: Conjunct, spec: Spec) -> int:

@@ -5,6 +5,8 @@ from __future__ import annotations
 import pytest
 
 from tests.tools.lint.helpers import SIGNALS, block, codes, findings_in
+from tltlc.monitor.monitor import Monitor
+from tltlc.pipeline import compile_text
 
 BEFORE = f"clock 1 Hz\n{SIGNALS}"
 
@@ -47,3 +49,27 @@ def test_a_count_in_arithmetic_gets_its_sum_in_brackets() -> None:
 )
 def test_other_counts_get_none(count: str) -> None:
     assert "TLT0465" not in codes(block(f"keep {count} <= 2", before=BEFORE))
+
+
+def test_a_count_of_changes_of_a_number_gets_the_time_with_them() -> None:
+    before = "clock 10 Hz\nsignal n: int in [0, 9]\n"
+    text = block("keep times_within(n > previous(n), 1 s) <= 1", before=before)
+    (finding,) = (item.diagnostic for item in findings_in(text) if item.diagnostic.code == "TLT0465")
+    offered = "keep total_time_within(n > previous(n), 1 s) / 0.1 s <= 1"
+    assert f"write `{offered}`;" in (finding.help or "")
+    assert "TLT0465" not in codes(block(offered, before=before))
+    assert "TLT0465" not in codes(block("keep times(n > previous(n)) <= 1", before=before))
+
+
+@pytest.mark.parametrize(
+    ("count", "last"),
+    [
+        ("times_within(n > previous(n), 1 s)", "holding"),
+        ("total_time_within(n > previous(n), 1 s) / 0.1 s", "violated"),
+    ],
+)
+def test_the_time_with_changes_counts_those_at_steps_in_a_row(count: str, last: str) -> None:
+    (fspa,) = compile_text(f"clock 10 Hz\nsignal n: int in [0, 9]\nspec s {{ keep {count} <= 1 }}")
+    for numbers, verdict in (((0, 1, 1), "holding"), ((0, 1, 1, 2), "violated"), ((0, 1, 2), last)):
+        monitor = Monitor(fspa)
+        assert [monitor.step({"n": n}).verdict for n in numbers][-1] == verdict

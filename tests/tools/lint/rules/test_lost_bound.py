@@ -97,9 +97,9 @@ def test_the_advice_for_a_sequence_is_a_deadline_of_its_first_goal() -> None:
 
 def test_a_sequence_after_an_event_may_have_a_time_from_that_event() -> None:
     assert helps("keep begins a implies eventually within 2 s (b then a then b)") == [
-        "for all of it within 2 s of `begins a`, write `eventually within 2 s (b and previously (not begins a since "
-        "(a and previously (not begins a since b))))`, where each `begins a` asks for all of it anew, also if one "
-        "before it is not answered yet; without a time, leave the bound out"
+        "for all of it within 2 s of `begins a`, write `eventually within 2 s (b and not begins a and previously (not "
+        "begins a since (a and not begins a and previously (not begins a since b))))`, where each `begins a` asks "
+        "for all of it anew, also if one before it is not answered yet; without a time, leave the bound out"
     ]
     assert helps("keep a implies (eventually within 2 s (b then a))") == [
         "without a time, leave the bound out; for a time from `b` on, write `eventually (b then within 2 s a)`"

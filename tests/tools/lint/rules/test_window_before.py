@@ -211,6 +211,10 @@ def test_other_rules_get_none(clause: str) -> None:
 @pytest.mark.parametrize(
     ("clause", "offered"),
     [
+        (
+            "keep a implies highest_within(x, 3 s) - lowest_within(x, 3 s) <= 5",
+            "keep time_holding(a) >= 3 s implies highest_within(x, 3 s) - lowest_within(x, 3 s) <= 5",
+        ),
         ("keep a implies times_within(b, 3 s) >= 2", "keep time_holding(a) >= 3 s implies times_within(b, 3 s) >= 2"),
         (
             "keep mode is run implies total_time_within(b, 3 s) >= 1 s",

@@ -55,8 +55,8 @@ def _finding_of_goals(until: ScopedExpression, first: ScopedExpression, end: Sco
     )
     if any(isinstance(part, BinaryExpr) and part.bound is not None for part in parts(end.tree)):
         help_ = (
-            f"say what holds where `{last.text}` comes, such as `{operand_text(last)} and once {operand_text(goals[0])}`;"
-            " else allow this with the comment `// tltlc: allow TLT0473`"
+            f"say what holds at its end, such as `{operand_text(last)} and once {operand_text(goals[0])}`; else allow "
+            "this with the comment `// tltlc: allow TLT0473`"
         )
     return RuleFinding(f"this `{word}` may end before `{last.text}`", (label,), help_)
 

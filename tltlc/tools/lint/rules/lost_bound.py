@@ -99,7 +99,7 @@ def _before_sequence(part: ScopedExpression, event: str | None) -> Iterator[Rule
             goals = [operand_text(outer.with_tree(goal)) for goal in operands(inner, "then")]
             whole = goals[0]
             for goal in goals[1:]:
-                whole = f"({goal} and previously (not {event} since {whole}))"
+                whole = f"({goal} and not {event} and previously (not {event} since {whole}))"
             anew = f"where each `{event}` asks for all of it anew, also if one before it is not answered yet"
             advice.insert(0, f"for all of it within {time} of `{event}`, write `eventually {bound} {whole}`, {anew}")
         elif event is None:

@@ -65,6 +65,11 @@ def _inner_conditions(tree: Expr) -> set[int]:
 
 def _in_answer(asked: AskedResult, clause: Clause, value: ScopedExpression, spec: SpecView) -> Iterator[RuleFinding]:
     condition, limit = asked.condition, asked.part
+    call = _range_window(limit)
+    if call is not None and _is_lasting(condition) and not _reads_the_same(call, condition, limit):
+        if _is_all_asked(asked, value):
+            yield _too_early(call, condition, limit, clause, value, spec)
+        return
     call = _only_window(limit)
     if call is None or not _is_lasting(condition) or _reads_the_same(call, condition, limit):
         return
@@ -205,6 +210,29 @@ def _only_window(comparison: ScopedExpression) -> CallExpr | None:
     if len(calls) != 1 or calls[0].name in comparison.env.scope.names:
         return None
     return calls[0]
+
+
+def _range_window(comparison: ScopedExpression) -> CallExpr | None:
+    """Return `highest_within(x, 2 s)` of a limit on it minus `lowest_within(x, 2 s)`; None for other comparisons."""
+    tree = comparison.tree
+    if not isinstance(tree, BinaryExpr) or tree.op not in _SIGNS:
+        return None
+    sides = [without_brackets(tree.left), without_brackets(tree.right)]
+    difference, most = sides if tree.op in ("<", "<=") else sides[::-1]
+    if not isinstance(most, NumberExpr):
+        return None
+    if not isinstance(difference, BinaryExpr) or difference.op != "-":
+        return None
+    highest, lowest = (without_brackets(side) for side in (difference.left, difference.right))
+    if not isinstance(highest, CallExpr) or not isinstance(lowest, CallExpr):
+        return None
+    if (highest.name, lowest.name) != ("highest_within", "lowest_within"):
+        return None
+    is_same = all(
+        comparison.with_tree(one.value).text == comparison.with_tree(other.value).text
+        for one, other in zip(highest.arguments, lowest.arguments, strict=True)
+    )
+    return highest if is_same and highest.name not in comparison.env.scope.names else None
 
 
 def _is_least(tree: Expr, call: CallExpr) -> bool | None:
