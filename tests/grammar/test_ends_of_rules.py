@@ -88,7 +88,8 @@ OTHERS: dict[str, Readings] = {
     ],
     "keep fire implies within 20 s (spray then boss_dead)": [
         (
-            "keep begins fire implies eventually within 20 s (boss_dead and previously (not begins fire since spray))",
+            "keep begins fire implies eventually within 20 s (boss_dead and not begins fire and "
+            "previously (not begins fire since spray))",
             "if the time counts from where `fire` begins, anew from each",
         ),
         (

@@ -150,8 +150,11 @@ SEVERAL = {
         "keep fire implies previously once spray",
     ],
     "keep begins fire implies eventually within 10 s spray, and after that not boss_dead until fire": [
-        "keep begins fire implies eventually within 10 s (spray and (not boss_dead weak_until fire))",
-        "keep begins fire implies eventually within 10 s (spray and (not boss_dead until fire))",
+        "keep begins fire implies eventually within 10 s spray",
+        "keep spray and (begins fire or begins spray) and once within 10 s begins fire implies "
+        "(not boss_dead weak_until fire)",
+        "keep spray and (begins fire or begins spray) and once within 10 s begins fire implies "
+        "(not boss_dead until fire)",
     ],
 }
 

@@ -270,11 +270,17 @@ SEVERAL_READINGS = {
     ],
     "between two fire there is a spray": [
         (
-            "keep fire and previously once fire implies previously (not fire since (spray "
-            "and not fire and previously once fire))",
+            "keep begins fire and previously once fire implies previously (not begins fire since (spray "
+            "and not begins fire))",
             "if it must come at some step between them",
         ),
         ("keep not fire and previously once fire implies spray", "if it must hold at every step between them"),
+    ],
+    "between ends fire and begins fire at least once spray": [
+        (
+            "keep begins fire and previously once fire implies previously (not fire since (spray and not fire))",
+            "",
+        ),
     ],
 }
 

@@ -223,6 +223,9 @@ class Answers(Conditions):
             return None
         return self.within_then_until(state, duration, state, end)
 
+    def within_first_and_until(self, duration: Duration, state: State, *rest: Term | State) -> list[Asked] | None:
+        return self.within_and_until(state, duration, *rest)
+
     def within_and_while(self, state: State, duration: Duration, *rest: Term | State) -> list[Asked] | None:
         """Return the answer of `a within 5 s and stays so while b`."""
         during = rest[-1]

@@ -278,6 +278,50 @@ class Intervals(Rules):
     def lasts_from_to(self, state: State, least: Duration, most: Duration) -> _Found:
         return self.lasts_between(state, (least, most))
 
+    def lasts_exactly_unless(self, state: State, duration: Duration, event: Event) -> Reading | None:
+        """Return the rules of `each a lasts exactly 4 s unless b`, which ends it earlier."""
+        excuse = as_state(event)
+        if excuse is None or duration.is_steps or not are_simple(state, excuse):
+            return None
+        a = state.at(ATOM)
+        lasting = f"(always for {duration.text} {a}) or ({a} until {excuse.at(ATOM)})"
+        return Reading(
+            (f"keep {begun_text(state)} implies {lasting}", f"avoid time_holding({state.text}) > {duration.text}")
+        )
+
+    def stops_after(self, state: State, duration: Duration, event: State) -> list[Reading] | None:
+        """Return the readings of `a ends at most 8 s after the last b`: no later a, or an end after each b."""
+        if not are_simple(state, event) or state == event or is_edge(state):
+            return None
+        time = duration.text
+        return [
+            Reading(
+                (f"keep {state.at(OR)} implies once within {time} {event.at(ATOM)}",),
+                f"if `{state.text}` may hold only up to {time} after a `{event.text}`, the last one",
+            ),
+            Reading(
+                (f"keep {event.text} and {state.text} implies eventually within {time} {state.negated().at(ATOM)}",),
+                f"if it must have ended once within {time} after each `{event.text}`",
+            ),
+        ]
+
+    def every_about(self, state: State, duration: Duration, *rest: Term | Duration) -> Reading | None:
+        """Return the rules of `a every 10 s +- 1 s`: none earlier, and one by then."""
+        slack = rest[-1]
+        assert isinstance(slack, Duration)
+        if duration.is_steps or slack.is_steps or not are_simple(state) or not self._step_s:
+            return None
+        steps, spare = round(self.steps(duration), 6), round(self.steps(slack), 6)
+        if not 0 < spare < steps - 1 or not steps.is_integer() or not spare.is_integer():
+            return None
+        begun = begun_text(state)
+        return Reading(
+            (
+                f"avoid ({begun}) then within {int(steps - spare) - 1} steps ({begun})",
+                f"keep time_holding(not {state.at(ATOM)}) < {(steps + spare) * self._step_s:.10g} s",
+            )
+        )
+
     def lasts_up_to(self, state: State, most: Duration, least: Duration) -> _Found:
         return self.lasts_between(state, (least, most))
 
@@ -370,7 +414,23 @@ def _exactly_one(state: State, start: State, end: State) -> str:
 
 def _at_the_end(states: list[State], start: State, end: State) -> str:
     """Return the clause that asks, at each end of a stretch, for events in it."""
+    if len(states) == 1 and start.text == end.text and end.text.isidentifier():
+        begun = begun_text(end)
+        inside = joined([states[0], State(f"not {begun}")], "and")
+        came = f"previously (not {begun} since {inside.at(ATOM)})"
+        return f"keep {begun} and previously once {end.text} implies {came}"
+    if len(states) == 1 and _is_gap(start, end):
+        state = changing(end)
+        inside = joined([states[0], state.negated()], "and")
+        came = f"previously ({state.negated().at(ATOM)} since {inside.at(ATOM)})"
+        return f"keep {end.at(AND)} and previously once {state.at(ATOM)} implies {came}"
     return f"keep {end.at(AND)} and {_seen([], start, end).text} implies {_seen(states, start, end).text}"
+
+
+def _is_gap(start: State, end: State) -> bool:
+    """Whether a stretch goes from `ends a` to `begins a`, and so has all steps without a."""
+    is_edge_pair = start.text.startswith("ends ") and end.text.startswith("begins ")
+    return is_edge_pair and changing(start) == changing(end)
 
 
 def _never_so_long(state: State, duration: Duration) -> Reading | None:

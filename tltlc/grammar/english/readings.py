@@ -267,6 +267,8 @@ def sentence_of(parser: SentenceParser, terminals: Sequence[Term], words: Words)
         unique.setdefault(reading.clauses, reading)
     if len(unique) > _MOST_READINGS:
         return Sentence()
+    if not any(term.text in ("reach", "sometime") for term in terminals):
+        _drop_goals(unique)
     empty = [key for key in unique if len(key) == 1 and has_empty_option(key[0])]
     for key in empty if len(empty) < len(unique) else ():
         del unique[key]
@@ -277,6 +279,14 @@ def sentence_of(parser: SentenceParser, terminals: Sequence[Term], words: Words)
             if later:
                 unique[later,] = replace(reading, clauses=(later,))
     return Sentence(tuple(unique.values()), next(iter(rules.limits), ""))
+
+
+def _drop_goals(found: dict[tuple[str, ...], Reading]) -> None:
+    """Drop the readings in which the second of two events is a goal: that of `no a between b and begins c`."""
+    goals = [key for key in found if len(key) > 1 and key[-1].startswith("reach ")]
+    if len(goals) < len(found):
+        for key in goals:
+            del found[key]
 
 
 def _never_first(terminals: Sequence[Term]) -> list[Term]:

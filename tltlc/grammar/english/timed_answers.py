@@ -19,17 +19,23 @@ _MOST_STEPS: Final = 10
 _MOST_PAIRS: Final = 150
 """The most that the steps of both times may be multiplied, if the first one has more steps."""
 
+_MOST_STEPS_UNTIL: Final = 50
+"""The most steps within which an answer with `until` may begin in one clause."""
+
 _Found = Reading | list[Reading] | None
 
 
 @record
 class Lasting:
-    """An answer that begins within a time with a condition, and then keeps another one for a time."""
+    """An answer that begins within a time with a condition, and what is asked for from there on."""
 
     state: State
-    kept: State
     duration: Duration
-    length: Duration
+    answer: str
+
+
+def _lasting(state: State, kept: State, duration: Duration, length: Duration) -> Lasting:
+    return Lasting(state, duration, f"always for {length.text} {kept.at(ATOM)}")
 
 
 class TimedAnswers(Rules):
@@ -111,7 +117,7 @@ class TimedAnswers(Rules):
             f"if `{state.text}` begins within {duration.text}, and then lasts {length.text}",
             is_formula=True,
         )
-        self._note_lasting(begun, Lasting(state, state, duration, length))
+        self._note_lasting(begun, _lasting(state, state, duration, length), length)
         if length.is_steps or not 0 < self.steps(length) <= self.steps(duration):
             return [replace(begun, condition="")]  # it cannot be over in that time
         over = f"eventually within {duration.text} time_holding({state.text}) >= {length.text}"
@@ -119,25 +125,29 @@ class TimedAnswers(Rules):
         return [begun, Asked(Answer("now", State(over)), condition, is_formula=True)]
 
     def within_then_until(self, state: State, duration: Duration, kept: State, end: State) -> list[Asked]:
-        settled = self.settled.get
-        return super().within_then_until(settled(state.text, state), duration, settled(kept.text, kept), end)
+        state, kept = self.settled.get(state.text, state), self.settled.get(kept.text, kept)
+        answers = super().within_then_until(state, duration, kept, end)
+        for asked in answers if self.steps(duration) > _MOST_STEPS_UNTIL else ():
+            until = asked.answer.state.text.removeprefix(f"{state.at(AND)} and ")
+            self._lasting[asked.answer.state.text] = Lasting(state, duration, until)
+        return answers
 
     def within_then_lasting(self, state: State, duration: Duration, kept: State, length: Duration) -> Asked:
         state, kept = self.settled.get(state.text, state), self.settled.get(kept.text, kept)
         asked = super().within_then_lasting(state, duration, kept, length)
-        self._note_lasting(asked, Lasting(state, kept, duration, length))
+        self._note_lasting(asked, _lasting(state, kept, duration, length), length)
         return asked
 
     def within_lasting(self, state: State, duration: Duration, length: Duration) -> Asked | None:
         asked = super().within_lasting(state, duration, length)
         state = self.settled.get(state.text, state)
         if asked is not None:
-            self._note_lasting(asked, Lasting(state, state, duration, length))
+            self._note_lasting(asked, _lasting(state, state, duration, length), length)
         return asked
 
-    def _note_lasting(self, asked: Asked, lasting: Lasting) -> None:
-        first, length = self.steps(lasting.duration), self.steps(lasting.length)
-        if not 0 < first <= _MOST_STEPS and not 0 < first * length <= _MOST_PAIRS:
+    def _note_lasting(self, asked: Asked, lasting: Lasting, length: Duration) -> None:
+        first = self.steps(lasting.duration)
+        if not 0 < first <= _MOST_STEPS and not 0 < first * self.steps(length) <= _MOST_PAIRS:
             self._lasting[asked.answer.state.text] = lasting
 
     def first(self, when: When, event: Event, answers: list[Asked]) -> _Found:
@@ -163,7 +173,7 @@ class TimedAnswers(Rules):
         return Reading(
             (
                 f"keep {condition.at(OR)} implies eventually within {time} {state.at(ATOM)}",
-                f"keep {start.text} implies always for {lasting.length.text} {lasting.kept.at(ATOM)}",
+                f"keep {start.text} implies {lasting.answer}",
             ),
             answers[0].condition,
         )

@@ -227,7 +227,7 @@ class TwoEvents(Rules):
             return None
         begin = begun_text(start)
         came = State(f"previously (not {begin} since {sequel.first.at(ATOM)})")
-        time, done = sequel.duration.text, joined([sequel.second, came], "and")
+        time, done = sequel.duration.text, joined([sequel.second, State(f"not {begin}"), came], "and")
         last = State(f"eventually within {time} {sequel.second.at(ATOM)}")
         goal = joined([done, *exception], "or") if exception else done
         from_second = joined([joined([sequel.first, last], "and"), *exception], "or")
