@@ -13,10 +13,11 @@ from tltlc.grammar.walk import expressions, parts
 from tltlc.logic.formula import Formula, atom, not_
 from tltlc.resolve import units
 from tltlc.resolve.dimensions import same_dimension
+from tltlc.resolve.enums import check_order
 from tltlc.resolve.margins import robustness
 from tltlc.resolve.problem import ResolutionError, problem
 from tltlc.resolve.quantities import check_steps
-from tltlc.resolve.recall import check_closed, check_closed_pair, saturate, too_small_error
+from tltlc.resolve.recall import check_closed, check_closed_pair, saturate, too_small_error, with_all_maxima
 from tltlc.resolve.sums import sides
 from tltlc.resolve.values import PRODUCT, Env, Quantity, apply, range_text
 
@@ -40,9 +41,13 @@ def comparison(expr: BinaryExpr, env: Env) -> Formula:
     end (TLT0311), or if the arithmetic of a side may overflow (TLT0319).
     """
     levels = env.context.levels
+    check_order(expr, env)
     check_steps(expr.left, expr.right, env)
     check_steps(expr.right, expr.left, env)
-    left, right = sides(expr, env, levels)
+    try:
+        left, right = sides(expr, env, levels)
+    except ResolutionError as error:
+        raise with_all_maxima(error, expr, env) from None
     same_dimension(left, right, expr.right, env)
     left, right = saturate(left, right, expr.right, env), saturate(right, left, expr.left, env)
     check_closed_pair(left, right, expr, env)

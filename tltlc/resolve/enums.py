@@ -109,6 +109,28 @@ def enum_as_number_error(expr: NameExpr | CallExpr, values: Iterable[NameExpr], 
     return problem("TLT0302", title, env.scope.source, expr.span, advice=advice)
 
 
+def check_order(expr: BinaryExpr, env: Env) -> None:
+    """Raise ResolutionError (TLT0302) with a fix for `boss >= previous(boss)`: an enum goes through its values once."""
+    for side, other in ((expr.left, expr.right), (expr.right, expr.left)):
+        call, info = _without_brackets(other), enum_of(side, env)
+        if info is None or not isinstance(call, CallExpr) or call.name != "previous" or len(call.arguments) != 1:
+            continue
+        name = env.scope.source.slice(side.span)
+        if call.name in env.scope.names or env.scope.source.slice(call.arguments[0].value.span) != name:
+            continue
+        is_rising = (expr.op in (">", ">=")) == (side is expr.left)
+        values = info.values if is_rising else info.values[::-1]
+        rules = []
+        for at, value in enumerate(values[:-1]):
+            later = " or ".join(f"{name} is {each}" for each in values[at + 1 :])
+            rules.append(f"({name} is {value} implies not previously ({later}))")
+        text = f"({' and '.join(rules)})" if rules[1:] else rules[0]
+        advice = f"an enum has no order: write `{text}`, in the order of its declaration"
+        title = f"expected a number, found the enum `{name}`"
+        fixes = (replacement_fix(env.scope.source, expr.span, text),)
+        raise problem("TLT0302", title, env.scope.source, side.span, advice=advice, fixes=fixes)
+
+
 def enum_as_formula_error(expr: Expr, info: SignalInfo, env: Env) -> ResolutionError:
     """Return the error for an enum in place of a formula."""
     text = env.scope.source.slice(expr.span)

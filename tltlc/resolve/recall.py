@@ -6,14 +6,27 @@ from math import ceil, isinf
 from typing import Final
 
 from tltlc.core.record import replace
-from tltlc.diagnostics.diagnostic import Label, replacement_fix
+from tltlc.core.source import Span
+from tltlc.diagnostics.diagnostic import Edit, Fix, Label, replacement_fix
 from tltlc.expression.tree import Const, Expression, Op
 from tltlc.grammar.tree import BinaryExpr, CallExpr, Expr
+from tltlc.grammar.walk import parts
 from tltlc.resolve import registers, units
 from tltlc.resolve.counts_within import MOST_BEGINNINGS
 from tltlc.resolve.problem import ResolutionError, problem
 from tltlc.resolve.values import Env, Quantity, number_text
 
+_ARGUMENTS: Final = {
+    "times": 1,
+    "times_since": 2,
+    "times_within": 2,
+    "total_time": 1,
+    "total_time_since": 2,
+    "time_since": 1,
+    "time_holding": 1,
+}
+"""The counts and times that may have a maximum, and how many arguments they have without one."""
+_SEVERAL: Final = 2
 MOST_STEPS: Final = 10**9
 """The greatest maximum that a count or time may have, in steps."""
 
@@ -125,6 +138,34 @@ def _open_error(value: Quantity, expr: Expr, env: Env, advice: str) -> Resolutio
         "only a comparison of it, or of a sum, with a number finds one by itself",
         advice=advice,
     )
+
+
+def with_all_maxima(error: ResolutionError, expr: BinaryExpr, env: Env) -> ResolutionError:
+    """Return an error for a count without a maximum with the maxima of all counts and times of its comparison."""
+    found = error.diagnostic
+    calls = [part for part in parts(expr) if isinstance(part, CallExpr) and _may_be_open(part, env)]
+    if found is None or found.code != "TLT0321" or len(calls) < _SEVERAL:
+        return error
+    source, edits = env.scope.source, []
+    for call in sorted(calls, key=lambda call: call.span.end):
+        most = env.context.limit_text or "60 s"
+        if call.name.startswith("times"):
+            most = str(MOST_BEGINNINGS) if call.name == "times_within" else "1000"
+        edits.append(Edit(Span(call.span.end - 1, call.span.end - 1), f", {most}"))
+    text, at = "", expr.span.start
+    for edit in edits:
+        text, at = text + source.text[at : edit.span.start] + edit.text, edit.span.end
+    text = " ".join((text + source.text[at : expr.span.end]).split())
+    help_ = (
+        f"write the greatest value that one play can reach in each, e.g. `{text}`: from there on, they stay at it, and "
+        "no difference is seen"
+    )
+    return ResolutionError(replace(found, help=help_, fixes=(Fix(f"Write `{text}`", tuple(edits)),)))
+
+
+def _may_be_open(call: CallExpr, env: Env) -> bool:
+    """Whether a call is a count or a time without a maximum."""
+    return call.name in _ARGUMENTS and len(call.arguments) == _ARGUMENTS[call.name] and call.name not in env.scope.names
 
 
 def too_small_error(value: Quantity, limit: Label, needed: float) -> ResolutionError:

@@ -31,6 +31,13 @@ def test_a_count_or_a_time_as_the_condition_of_a_later_answer_gets_a_finding(con
     assert "TLT0463" not in codes(once)
 
 
+@pytest.mark.parametrize("answer", ["always for 2 s not c", "not c until b", "not c weak_until b"])
+def test_an_answer_that_lasts_gets_a_finding(answer: str) -> None:
+    text = block(f"keep times_within(a, 3 s) >= 2 implies {answer}", before=BEFORE)
+    (finding,) = (item.diagnostic for item in findings_in(text) if item.diagnostic.code == "TLT0463")
+    assert f"write `keep begins (times_within(a, 3 s) >= 2) implies {answer}`" in (finding.help or "")
+
+
 def test_an_answer_beside_an_excuse_gets_a_finding() -> None:
     text = block("keep time_holding(a) >= 2 s implies b or (eventually within 2 s c)", before=BEFORE)
     (finding,) = (item.diagnostic for item in findings_in(text) if item.diagnostic.code == "TLT0463")

@@ -27,6 +27,10 @@ def meant(text: str) -> str:
 @pytest.mark.parametrize(
     ("clause", "offered"),
     [
+        (
+            "keep begins a implies eventually within 2 steps (b and (b until c))",
+            "keep begins a implies eventually within 2 steps (b and (b weak_until c))",
+        ),
         ("keep a implies not b until c", "keep a implies not b weak_until c"),
         ("keep a implies (not b until c)", "keep a implies (not b weak_until c)"),
         ("keep a implies b U c", "keep a implies b W c"),

@@ -44,6 +44,9 @@ def test_a_rule_about_a_state_gets_a_note(clause: str, offered: str) -> None:
         "keep mode is run implies n <= previous(n, 2 s)",
         "keep mode is run implies n > previous(n)",
         "keep n <= previous(n)",
+        "keep a implies n == previous(n) - 1 or b",
+        "keep mode is run implies n <= previous(n) - 1",
+        "keep mode is run implies previous(n) + 1 <= n",
     ],
 )
 def test_other_rules_get_none(clause: str) -> None:

@@ -20,6 +20,14 @@ BEFORE = f"clock 1 Hz\n{SIGNALS}"
             "times_within(a, 3 s) == 2 implies always not a",
             "begins (times_within(a, 3 s) == 2) implies weak_next (always not begins a)",
         ),
+        (
+            "begins (times_within(a, 3 s) >= 2) implies always for 2 s not a",
+            "begins (times_within(a, 3 s) >= 2) implies weak_next (always for 2 s not begins a)",
+        ),
+        (
+            "begins times(begins a) >= 2 implies always for 2 s not begins a",
+            "begins times(begins a) >= 2 implies weak_next (always for 2 s not begins a)",
+        ),
         ("times(a and b) > 1 implies (not (a and b)) weak_until c", "begins (times(a and b) > 1) implies weak_next "),
         ("times_since(a, b) >= 2 implies not a", "previously (times_since(a, b) >= 2) implies not begins a"),
     ],

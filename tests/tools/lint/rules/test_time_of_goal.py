@@ -18,6 +18,16 @@ LENGTH = 5
     ("clause", "offered", "title"),
     [
         (
+            "reach mode is alert then within 0.5 s c then d",
+            "reach begins (mode is alert) then within 0.5 s c then d",
+            "this time counts from any step with `mode is alert`",
+        ),
+        (
+            "reach (mode is alert) then within 5 steps (c and d)",
+            "reach begins (mode is alert) then within 5 steps (c and d)",
+            "this time counts from any step with `mode is alert`",
+        ),
+        (
             "reach a then b then within 0.5 s c",
             "reach a then b then (c and once within 0.5 s begins a)",
             "this time counts from `b`, not from `a`",

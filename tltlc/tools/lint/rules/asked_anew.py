@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Final
+from typing import Final, TypeGuard
 
 from tltlc.diagnostics.diagnostic import Label
 from tltlc.grammar.tree import BinaryExpr, CallExpr, Expr, Unary
@@ -25,7 +25,7 @@ _LASTING: Final = (
 
 
 def check(view: FileView) -> Iterator[RuleFinding]:
-    """Yield a finding for each rule with a count or a time as its condition, whose answer may come later.
+    """Yield a finding for each rule with a count or a time as its condition, whose answer may come later, or lasts.
 
     The condition may also ask for states: ``times(a) >= 3 and c implies eventually b``.
     """
@@ -41,10 +41,19 @@ def _may_wait(asked: AskedResult) -> bool:
     answer = _later_part(asked.part)
     if asked.steps or answer is None:
         return False
-    goal = without_brackets(answer.operand)
+    goal = _goal(answer)
     if isinstance(goal, Unary) and goal.op == "G":
         return False
-    return all(_goes_on(asked, goal, counted) for counted in _counts(asked))
+    return all(_goes_on(asked, goal, call) and not _is_denied(asked, answer, call) for call in _counts(asked))
+
+
+def _is_denied(asked: AskedResult, answer: Unary | BinaryExpr, call: CallExpr) -> bool:
+    """Whether an answer forbids from now on what is counted, which TLT0471 has."""
+    now = without_brackets(answer.left if isinstance(answer, BinaryExpr) else answer.operand)
+    if not isinstance(now, Unary) or now.op != "not":
+        return False
+    counted = asked.condition.with_tree(without_brackets(call.arguments[0].value)).text
+    return asked.part.with_tree(without_brackets(now.operand)).text == counted
 
 
 def _goes_on(asked: AskedResult, goal: Expr, counted: CallExpr) -> bool:
@@ -71,18 +80,30 @@ def _counts(asked: AskedResult) -> list[CallExpr]:
     return [call for call in left if isinstance(call, CallExpr) and call.name in _LASTING and call.arguments]
 
 
-def _later_part(asked: ScopedExpression) -> Unary | None:
-    """Return what may come later: `eventually b`, alone or beside a state as in `c or (eventually b)`."""
+def _later_part(asked: ScopedExpression) -> Unary | BinaryExpr | None:
+    """Return what may come later, or lasts: `eventually b`, alone or as in `c or (eventually b)`, or `b until c`."""
     parts = (without_brackets(part) for part in operands(without_brackets(asked.tree), "or"))
-    return next((part for part in parts if isinstance(part, Unary) and part.op == "F"), None)
+    return next((part for part in parts if _is_later(part)), None)
+
+
+def _is_later(part: Expr) -> TypeGuard[Unary | BinaryExpr]:
+    if isinstance(part, BinaryExpr):
+        return part.op in ("U", "W")
+    return isinstance(part, Unary) and (part.op == "F" or (part.op == "G" and part.bound is not None))
+
+
+def _goal(answer: Unary | BinaryExpr) -> Expr:
+    """Return what must come, or must last for a time."""
+    return without_brackets(answer.right if isinstance(answer, BinaryExpr) else answer.operand)
 
 
 def _finding(asked: AskedResult, keyword: str) -> RuleFinding:
     """Return the finding for a rule; ``keyword`` is that of its clause, if the rule is all of it."""
     condition, answer, later = asked.condition.text, asked.part, _later_part(asked.part)
     assert later is not None
-    goal = answer.with_tree(without_brackets(later.operand)).text
-    label = Label(asked.condition.source, asked.condition.tree.span, f"at each step with this, `{goal}` must come anew")
+    goal = answer.with_tree(_goal(later)).text
+    anew = f"`{goal}` must come anew" if later.op == "F" else f"`{answer.with_tree(later).text}` is asked for anew"
+    label = Label(asked.condition.source, asked.condition.tree.span, f"at each step with this, {anew}")
     help_ = (
         f"if once is enough, write `{keyword}begins ({condition}) implies {answer.text}`; if each step asks for it, "
         "allow this with the comment `// tltlc: allow TLT0463`"

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import Label
-from tltlc.grammar.tree import BinaryExpr
+from tltlc.grammar.tree import BinaryExpr, Unary
+from tltlc.grammar.walk import conjuncts
 from tltlc.tools.lint.asked_results import AskedResult, Rewriting, asked_results
-from tltlc.tools.lint.file_view import FileView
+from tltlc.tools.lint.file_view import FileView, without_brackets
 from tltlc.tools.lint.rule import LintRule, RuleFinding
 
 
@@ -22,16 +24,26 @@ def check(view: FileView) -> Iterator[RuleFinding]:
             continue
         for clause, value in spec.clauses("keep", "require"):
             by_goal: dict[str, list[AskedResult]] = {}
-            for result in asked_results(clause, value):
-                tree = result.part.tree
-                if isinstance(tree, BinaryExpr) and tree.op == "U":
-                    by_goal.setdefault(result.part.with_tree(tree.right).text, []).append(result)
+            for asked in asked_results(clause, value):
+                for result in _with_later_parts(asked):
+                    tree = result.part.tree
+                    if isinstance(tree, BinaryExpr) and tree.op == "U":
+                        by_goal.setdefault(result.part.with_tree(tree.right).text, []).append(result)
             rewriting = Rewriting(clause, value, spec)
             for goal, untils in by_goal.items():
                 others = [result.part for same in by_goal.values() if same is not untils for result in same]
                 others += [step for same in by_goal.values() for result in same for step in result.next_steps]
                 if rewriting.differs([result.part for result in untils], others):
                     yield _finding(rewriting, goal, untils)
+
+
+def _with_later_parts(asked: AskedResult) -> Iterator[AskedResult]:
+    """Yield a result, and what `eventually (a and (b until c))` asks for in it."""
+    yield asked
+    tree = asked.part.tree
+    if isinstance(tree, Unary) and tree.op == "F":
+        for part in conjuncts(without_brackets(tree.operand)):
+            yield replace(asked, part=asked.part.with_tree(without_brackets(part)))
 
 
 def _finding(rewriting: Rewriting, goal: str, untils: list[AskedResult]) -> RuleFinding:

@@ -53,9 +53,16 @@ def _compares_with_step_before(answer: ScopedExpression) -> bool:
         tree = without_brackets(part)
         if isinstance(tree, BinaryExpr) and tree.op in _KEPT:
             sides = [without_brackets(tree.left), without_brackets(tree.right)]
-            if any(_is_before(moved(other)[0], one, answer) for one, other in (sides, sides[::-1])):
-                return True
+            for (one, other), sign in ((sides, 1), (sides[::-1], -1)):
+                before, step = moved(other)
+                if _is_before(before, one, answer) and _is_met_unchanged(tree.op, step * sign):
+                    return True
     return False
+
+
+def _is_met_unchanged(op: str, step: float) -> bool:
+    """Whether a number that stays as it was meets `x >= previous(x) + step`."""
+    return {"<=": step >= 0, ">=": step <= 0, "==": step == 0}[op]
 
 
 def _is_before(call: Expr, number: Expr, answer: ScopedExpression) -> bool:

@@ -58,7 +58,7 @@ def _finding(asked: AskedResult, event: ScopedExpression, keyword: str) -> RuleF
     label = Label(
         asked.part.source, asked.part.tree.span, f"the step at which the count comes to it has `{event.text}`"
     )
-    begun = f"not begins {counted}"
+    begun = f"not {counted}" if counted.startswith("begins ") else f"not begins {counted}"
     if isinstance(asked.part.tree, Unary) and asked.part.tree.op == "not":
         later = f"previously ({condition}) implies {begun}"
     else:

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from tltlc.diagnostics.diagnostic import Label
 from tltlc.grammar import walk
-from tltlc.grammar.tree import BinaryExpr, Expr, TemporalInterval, Unary
+from tltlc.grammar.tree import BinaryExpr, Expr, IsExpr, TemporalInterval, Unary
 from tltlc.logic.formula import Formula, and_, eventually, not_
 from tltlc.logic.text.phrases import is_state
 from tltlc.resolve.spec import Conjunct
@@ -24,12 +24,28 @@ def check(view: FileView) -> Iterator[RuleFinding]:
     for spec in view.specs:
         for _, value in spec.clauses("reach"):
             goals, bounds = _goals(value)
+            if bounds and bounds[0] is not None and isinstance(without_brackets(goals[0].tree), IsExpr):
+                yield _from_any_step(goals, bounds)
             timed = [place for place, bound in enumerate(bounds, start=1) if bound is not None]
             if len(timed) == 1 and timed[0] >= 2:
                 (place,) = timed
                 is_said = _is_edge(goals[place - 1].tree) and not _is_edge(goals[0].tree)
                 if not is_said and _begins_once(goals[: place + 1], spec):
                     yield _finding(goals, place, bounds[place - 1])
+
+
+def _from_any_step(goals: list[ScopedExpression], bounds: list[TemporalInterval | None]) -> RuleFinding:
+    """Return the finding for `reach (mode is one) then within 3 min b`, which may count from a late step of one."""
+    first, source, bound = goals[0], goals[0].source, bounds[0]
+    assert bound is not None
+    last = goals[-1].tree.span
+    rest = " ".join(source.text[first.tree.span.end : last.end].lstrip(") ").split())
+    label = Label(source, bound.span, f"from any step with `{first.text}`, such as its last")
+    help_ = (
+        f"if it counts from where `{first.text}` begins, write `reach begins ({first.text}) {rest}`; if it counts from "
+        "its last step, allow this with the comment `// tltlc: allow TLT0481`"
+    )
+    return RuleFinding(f"this time counts from any step with `{first.text}`", (label,), help_)
 
 
 def _goals(value: ScopedExpression) -> tuple[list[ScopedExpression], list[TemporalInterval | None]]:
