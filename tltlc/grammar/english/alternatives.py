@@ -7,7 +7,7 @@ from tltlc.grammar.english.answers import Asked
 from tltlc.grammar.english.events import Event, as_state
 from tltlc.grammar.english.intervals import changing, is_edge
 from tltlc.grammar.english.quantities import Duration, Number, comparison
-from tltlc.grammar.english.rules import Reading, Rules, When
+from tltlc.grammar.english.rules import Reading, Rules, When, are_simple
 from tltlc.grammar.english.terminals import Term
 from tltlc.grammar.mistakes.sentences.states import ATOM, State, joined
 
@@ -68,6 +68,12 @@ class Alternatives(Rules):
             return None
         begun = end.text.replace("ends ", "begins ", 1)
         return joined([State(end.text, ATOM), State(f"time_since({begun}) {sign} {duration.text}")], "and")
+
+    def ended_behind(self, end: State, state: State, duration: Duration) -> State | None:
+        """Return the condition of `a ends after a for at least 2 s`."""
+        if not end.text.startswith("ends ") or duration.is_steps or not are_simple(state):
+            return None
+        return joined([end, State(f"previously (time_holding({state.text}) >= {duration.text})")], "and")
 
     # The ends of the range of a number.
 

@@ -100,6 +100,7 @@ PHRASES: Final[Mapping[str, str]] = {
     "in the next|within the next|in next|within next|not later than|under",
     "first": "in the first|within the first|during the first|in first|within first|during first|for the first|"
     "for first",
+    "all_time": "time|episode|run|recording|session|play|game|match",
     "in_last": "in last|during last|within last|for last|throughout last|over last",
     "must_have_been": "must have been|must have been true|must have held|must have stayed|should have been|"
     "has to have been",

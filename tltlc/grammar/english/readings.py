@@ -272,6 +272,7 @@ def sentence_of(parser: SentenceParser, terminals: Sequence[Term], words: Words)
     empty = [key for key in unique if len(key) == 1 and has_empty_option(key[0])]
     for key in empty if len(empty) < len(unique) else ():
         del unique[key]
+    _label_once(unique)
     for clauses, reading in list(unique.items()):
         if forbids_its_event(clauses):
             del unique[clauses]
@@ -279,6 +280,16 @@ def sentence_of(parser: SentenceParser, terminals: Sequence[Term], words: Words)
             if later:
                 unique[later,] = replace(reading, clauses=(later,))
     return Sentence(tuple(unique.values()), next(iter(rules.limits), ""))
+
+
+def _label_once(found: dict[tuple[str, ...], Reading]) -> None:
+    """Say when `once a, b` means the operator `once`, and when `once` is a word for `when`."""
+    for key in [key for key in found if len(key) == 1 and key[0].startswith("keep once ")]:
+        when = ("keep " + key[0].removeprefix("keep once "),)
+        if when in found and not found[key].condition and not found[when].condition:
+            operator = replace(found.pop(key), condition="if it is asked for again at every later step")
+            found[when] = replace(found.pop(when), condition="if it is asked for at each of its steps alone")
+            found[key] = operator
 
 
 def _drop_goals(found: dict[tuple[str, ...], Reading]) -> None:

@@ -118,6 +118,8 @@ def _terms(words: Words, vocabulary: Mapping[str, str]) -> Iterator[Term]:
             yield Term(vocabulary["right"], "right")
         elif word.text == "one" and (words.word(at) == "of" or _is_article(words, start)):
             yield Term(vocabulary["one"], "one")
+        elif not word.is_name and _is_value(words, start):
+            yield Term("VALUE", word.text)
         elif words.word(at) == _ENDINGS.get(word.text) and (text := _ORDINALS[word.text]) in vocabulary:
             yield Term(vocabulary[text], text)
             at += 1

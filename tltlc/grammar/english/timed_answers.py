@@ -132,6 +132,18 @@ class TimedAnswers(Rules):
             self._lasting[asked.answer.state.text] = Lasting(state, duration, until)
         return answers
 
+    def within_then_until_held(
+        self, state: State, duration: Duration, kept: State, end: State, length: Duration
+    ) -> list[Asked] | None:
+        """Return the answers of `b within 1 s, and then c until d for 3 s`."""
+        held = as_state(Held(end, ">=", length))
+        return None if held is None else self.within_then_until(state, duration, kept, held)
+
+    def within_stays_until_held(
+        self, state: State, duration: Duration, end: State, length: Duration
+    ) -> list[Asked] | None:
+        return self.within_then_until_held(state, duration, state, end, length)
+
     def within_then_lasting(self, state: State, duration: Duration, kept: State, length: Duration) -> Asked:
         state, kept = self.settled.get(state.text, state), self.settled.get(kept.text, kept)
         asked = super().within_then_lasting(state, duration, kept, length)

@@ -10,7 +10,7 @@ from tltlc.grammar.english.quantities import Duration
 from tltlc.grammar.english.rules import Goals, Reading, Rules, When, are_simple, begun_text, not_again
 from tltlc.grammar.english.terminals import Term
 from tltlc.grammar.mistakes.sentences.answers import Answer
-from tltlc.grammar.mistakes.sentences.states import ATOM, OR, State, joined
+from tltlc.grammar.mistakes.sentences.states import AND, ATOM, OR, State, joined
 
 _Found = Reading | list[Reading] | None
 
@@ -95,6 +95,18 @@ class TwoEvents(Rules):
                 f"avoid {event.text} and {recent} {state.at(ATOM)}",
             )
         )
+
+    def or_soon_after(self, state: State, duration: Duration, event: State) -> State | None:
+        """Return the condition of `(a or within 3 s after b)`."""
+        if not are_simple(state, event):
+            return None
+        return State(f"({state.at(OR)} or once within {duration.text} {event.at(ATOM)})")
+
+    def avoid_soon_after(self, state: State, duration: Duration, event: State) -> Reading | None:
+        """Return the rule of `no a and within 3 s after b`."""
+        if not are_simple(state, event):
+            return None
+        return Reading((f"avoid {state.text} and once within {duration.text} {event.at(ATOM)}",))
 
     def avoid_during_and_after(self, state: State, during: State, duration: Duration, after: State) -> Reading | None:
         """Return the rule of `no a while b or within 2 s after b`."""
@@ -189,6 +201,24 @@ class TwoEvents(Rules):
     def never_and(self, never: State, state: State) -> list[Asked] | None:
         """Return the answers of `never b and c`, if c must hold: no b up to that step, or from it on."""
         return self.and_never(state, never)
+
+    def now_or_long_after(self, state: State, duration: Duration, event: State) -> Asked | None:
+        """Return the answer of `c or 60 s after a`: c, or a was so long ago."""
+        if duration.is_steps or not are_simple(state, event):
+            return None
+        later = State(f"once {event.at(ATOM)} and time_since({event.text}) >= {duration.text}", AND)
+        return Asked(Answer("now", joined([state, State(f"({later.text})")], "or")))
+
+    def implied_chain_since(self, event: State, *states: State) -> Reading | None:
+        """Return the rule of `a implies b then c since the last a`: they have come in this order since then."""
+        *goals, again = states
+        if event != again or not are_simple(event, *goals) or event in goals:
+            return None
+        begun, came = begun_text(event), goals[0]
+        free = State(f"not {begun}")
+        for goal in goals[1:]:
+            came = joined([goal, free, State(f"previously ({free.text} since {came.at(ATOM)})")], "and")
+        return Reading((f"keep {begun} implies previously ({free.text} since {joined([came, free], 'and').at(ATOM)})",))
 
     def only_when_never(self, state: State, never: State) -> Reading | None:
         """Return the rule of `a only if never b`."""

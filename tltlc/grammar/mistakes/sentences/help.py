@@ -134,7 +134,9 @@ def _with_reading(
         (is_whole and not _is_foreign(known.fixes[0], failure)) or _has_readings(failure, known.help or "")
     ):
         return known
-    if words.word(0) == "require" and (words.word(1) in ("at", "the", "in", "for") or words.find(_WITHOUT_REQUIRE)):
+    is_until_in_time = words.find(phrases("until")) is not None and words.find(phrases("within")) is not None
+    is_at_place = words.word(1) in ("at", "the", "in", "for") or words.find(_WITHOUT_REQUIRE) or is_until_in_time
+    if words.word(0) == "require" and is_at_place:
         words = words[1:]
     if not words or words.word(0) == "require":
         return known
