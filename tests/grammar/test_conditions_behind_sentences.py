@@ -42,10 +42,6 @@ READINGS: dict[str, list[tuple[str, str]]] = {
             "keep ends (once within 29 steps begins fire) implies spray or once within 3 s boss_dead",
             "if it must hold 3 s after the last `begins fire`, at that step",
         ),
-        (
-            "keep once begins fire and time_since(begins fire) >= 3 s implies spray or once within 3 s boss_dead",
-            "if it must hold from then on, up to the next `begins fire`",
-        ),
     ],
     "after fire, spray within 3 s unless boss_dead within 3 s": [
         (

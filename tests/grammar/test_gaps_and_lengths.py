@@ -53,22 +53,34 @@ READINGS: dict[str, list[tuple[str, ...]]] = {
         ),
     ],
     "every fire lasts exactly 4 s unless spray": [
-        ("keep begins fire implies (always for 4 s fire) or (fire until spray)", "avoid time_holding(fire) > 4 s", ""),
+        (
+            "keep begins fire implies (always for 4 s fire) or (fire until spray)",
+            "avoid time_holding(fire) > 4 s and not spray",
+            "",
+        ),
     ],
     "fire lasts exactly 4 s": [
         ("keep begins fire implies always for 4 s fire", "avoid time_holding(fire) > 4 s", ""),
     ],
     "fire lasts exactly 4 s unless spray": [
-        ("keep begins fire implies (always for 4 s fire) or (fire until spray)", "avoid time_holding(fire) > 4 s", ""),
+        (
+            "keep begins fire implies (always for 4 s fire) or (fire until spray)",
+            "avoid time_holding(fire) > 4 s and not spray",
+            "",
+        ),
     ],
     "keep fire every 5 min +- 5 s": [
-        ("avoid (begins fire) then within 2949 steps (begins fire)", "keep time_holding(not fire) < 305 s", ""),
+        (
+            "avoid (begins fire) then within 2949 steps (begins fire)",
+            "keep time_holding(not begins fire) <= 304.8 s",
+            "",
+        ),
     ],
     "keep fire every 10 s plus or minus 1 s": [
-        ("avoid (begins fire) then within 89 steps (begins fire)", "keep time_holding(not fire) < 11 s", ""),
+        ("avoid (begins fire) then within 89 steps (begins fire)", "keep time_holding(not begins fire) <= 10.8 s", ""),
     ],
     "keep fire every 10 s give or take 1 s": [
-        ("avoid (begins fire) then within 89 steps (begins fire)", "keep time_holding(not fire) < 11 s", ""),
+        ("avoid (begins fire) then within 89 steps (begins fire)", "keep time_holding(not begins fire) <= 10.8 s", ""),
     ],
     "keep begins fire implies within 10 s spray and stays so until boss_dead": [
         (

@@ -278,7 +278,8 @@ def test_a_help_in_the_words_of_the_file_stays() -> None:
 
 def test_counting_stops_at_a_maximum() -> None:
     assert error_of("keep times(hit) >= 2 * times(seen)").help == (
-        "write the greatest value that matters, e.g. `times(seen, 1000)`: counting stops at the maximum"
+        "write the greatest value that one play can reach in each, e.g. `times(hit, 1000) >= 2 * times(seen, 1000)`: "
+        "from there on, they stay at it, and no difference is seen"
     )
 
 

@@ -132,10 +132,16 @@ READINGS: dict[str, list[tuple[str, ...]]] = {
         ("require always for 30 s not boss_dead", ""),
     ],
     "no fire during the last 10 s of phase shift": [
-        ("keep ends phase is shift implies not previously once within 10 s fire", "where `phase is shift` has ended"),
+        (
+            "keep ends phase is shift implies not previously once within 99 steps (fire and phase is shift)",
+            "where `phase is shift` has ended",
+        ),
     ],
     "keep fire in the last 10 s of phase shift": [
-        ("keep ends phase is shift implies previously historically for 10 s fire", "where `phase is shift` has ended"),
+        (
+            "keep ends phase is shift implies not previously once within 99 steps (not fire and phase is shift)",
+            "where `phase is shift` has ended",
+        ),
     ],
     "keep fire for the first 5 s of phase shift": [
         ("keep phase is shift and time_holding(phase is shift) < 5 s implies fire", ""),

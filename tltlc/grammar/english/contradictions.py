@@ -11,7 +11,7 @@ from typing import Final
 
 from tltlc.grammar.mistakes.sentences.validity import parsed_clause
 from tltlc.grammar.tree import BinaryExpr, CallExpr, Expr, GroupExpr, IsExpr, NameExpr, NumberExpr, Unary
-from tltlc.grammar.walk import operands
+from tltlc.grammar.walk import operands, parts
 
 Literals = frozenset[tuple[str, bool]]
 """Conditions, as they are written, and whether they hold."""
@@ -20,6 +20,7 @@ _POSITIVE: Final = {
 }  # fmt: skip
 """Maps the signs of comparisons to one of the two that are opposites, and whether it is the same."""
 _COUNTS: Final = ("times", "times_since", "times_within")
+_LASTING: Final = ("G", "U", "W")
 _NONE: Literals = frozenset()
 
 
@@ -52,18 +53,47 @@ def behind_its_event(clause: str) -> str:
     return "" if _contradicts_itself(later) else later
 
 
+def behind_its_count(clause: str) -> str:
+    """Return the rule that asks from the next step on, if it forbids with an excuse what its condition counts.
+
+    For `keep begins (times(a) >= 2) implies always for 3 s (not a or b)`, that is `… implies weak_next always for
+    3 s (not a or b)`; "" for other rules.
+    """
+    tree = parsed_clause(clause)
+    rule = tree.value if tree is not None else None
+    if not isinstance(rule, BinaryExpr) or rule.op != "implies":
+        return ""
+    counted = _counted(rule.left, clause) or _count(rule.left)
+    answer = rule.right
+    is_later = isinstance(answer, Unary) and answer.op in ("X", "N", "F")
+    if (
+        counted is None
+        or is_later
+        or not any(isinstance(part, (Unary, BinaryExpr)) and part.op in _LASTING for part in parts(answer))
+    ):
+        return ""
+    come = _at_this_step(counted[0], clause)
+    if not any(_differ(come, _at_this_step(part, clause)) for part in parts(answer)):
+        return ""
+    text = clause[answer.span.start : answer.span.end]
+    whole = text if isinstance(answer, (Unary, GroupExpr)) else f"({text})"
+    return f"{clause[: answer.span.start]}weak_next {whole}"
+
+
 def _contradicts_itself(clause: str) -> bool:
     tree = parsed_clause(clause)
     rule = tree.value if tree is not None else None
     if not isinstance(rule, BinaryExpr):
         return False
     if rule.op == "implies":
-        counted = _count(rule.left, clause)
-        come = _NONE if counted is None else frozenset({(counted[0], True)})
+        counted = _count(rule.left)
+        come = _NONE if counted is None else _at_this_step(counted[0], clause)
         return _differ(_at_this_step(rule.left, clause) | come, _at_this_step(rule.right, clause))
     if rule.op in ("U", "W"):
         counted = _counted(rule.right, clause)
-        return counted is not None and counted[1] > 1 and (counted[0], False) in _at_this_step(rule.left, clause)
+        if counted is None or counted[1] <= 1:
+            return False
+        return _differ(_at_this_step(counted[0], clause), _at_this_step(rule.left, clause))
     return False
 
 
@@ -75,7 +105,10 @@ def _at_this_step(expr: Expr, clause: str, *, holds: bool = True) -> Literals:
     """Return conditions that hold, or do not, at each step at which an expression has a truth value."""
     if isinstance(expr, GroupExpr):
         return _at_this_step(expr.inner, clause, holds=holds)
-    if isinstance(expr, NameExpr | IsExpr | CallExpr):
+    if isinstance(expr, IsExpr):
+        operand = clause[expr.operand.span.start : expr.operand.span.end]
+        return frozenset({(f"{operand} is {expr.value}", holds != expr.negated)})
+    if isinstance(expr, NameExpr | CallExpr):
         return frozenset({(clause[expr.span.start : expr.span.end], holds)})
     if isinstance(expr, Unary):
         return _of_unary(expr, clause, holds=holds)
@@ -100,7 +133,7 @@ def _of_unary(expr: Unary, clause: str, *, holds: bool) -> Literals:
     if expr.op in ("begins", "ends") and holds:
         counted = _counted(expr, clause)
         if counted is not None:
-            return frozenset({(counted[0], True)})
+            return _at_this_step(counted[0], clause)
         return _at_this_step(expr.operand, clause, holds=expr.op == "begins")
     is_from_now = expr.bound is None or expr.bound.low is None or expr.bound.low.value == 0.0
     if is_from_now and (expr.op, holds) in (
@@ -114,20 +147,20 @@ def _of_unary(expr: Unary, clause: str, *, holds: bool) -> Literals:
     return _NONE
 
 
-def _counted(expr: Expr, clause: str) -> tuple[str, float] | None:
+def _counted(expr: Expr, clause: str) -> tuple[Expr, float] | None:
     """Return p and n of `begins (times(p) >= n)`, and p and 1 of `begins (once p)`; None for others."""
     if not isinstance(expr, Unary) or expr.op != "begins":
         return None
     inner = expr.operand.inner if isinstance(expr.operand, GroupExpr) else expr.operand
     if isinstance(inner, Unary) and inner.op == "once" and inner.bound is None:
         operand = inner.operand.inner if isinstance(inner.operand, GroupExpr) else inner.operand
-        return clause[operand.span.start : operand.span.end], 1
+        return operand, 1
     if not isinstance(inner, BinaryExpr):
         return None
-    return _count(inner, clause)
+    return _count(inner)
 
 
-def _count(inner: Expr, clause: str) -> tuple[str, float] | None:
+def _count(inner: Expr) -> tuple[Expr, float] | None:
     """Return p and n of `times(p) >= n`, which p makes true."""
     if (
         not isinstance(inner, BinaryExpr)
@@ -138,5 +171,4 @@ def _count(inner: Expr, clause: str) -> tuple[str, float] | None:
     call = inner.left
     if not isinstance(call, CallExpr) or call.name not in _COUNTS:
         return None
-    value = call.arguments[0].value
-    return clause[value.span.start : value.span.end], inner.right.value
+    return call.arguments[0].value, inner.right.value

@@ -129,6 +129,9 @@ def _changed(clause: str, end: End, condition: State) -> _Changed | None:
         return _limited(clause, condition, end_is_stretch=end.is_stretch)
     if end.time is None:
         return _excused(clause, condition)
+    times = [time[0].text for index in range(len(end.before)) if (time := end.before.time(index)) is not None]
+    if end.time not in times or "time_since(" in clause.partition(" implies ")[0]:
+        return None  # it would be counted back from each step
     excused = _excused(clause, State(f"once within {end.time} {condition.at(ATOM)}")) if end.time else None
     return excused if excused is not None and not excused.where else None
 
@@ -146,7 +149,13 @@ def _excused(clause: str, excuse: State) -> _Changed | None:
     if isinstance(value, BinaryExpr) and value.op == "implies" and tree.kind == "keep":
         left, right = _state(value.left, clause), _state(value.right, clause)
         if _is_about_past(value.right):
-            return _Changed(f"keep {left.at(OR)} implies {joined([right, excuse], 'or').text}")
+            is_end = isinstance(value.left, Unary) and value.left.op == "ends" and "once within" in left.text
+            where = (
+                f"if `{excuse.text}` counts at the end of that time"
+                if is_end and not excuse.text.startswith(_PAST)
+                else ""
+            )
+            return _Changed(f"keep {left.at(OR)} implies {joined([right, excuse], 'or').text}", where)
         condition = joined([left, excuse.negated()], "and")
         if excuse.text in left.text or (isinstance(value.right, Unary) and value.right.bound is None):
             return None  # no condition excuses itself; what has no time may end at any step

@@ -326,15 +326,21 @@ class Exceptions(Rules):
         """Return the rule of `no a in the last 1 s of b`, which looks back where b has ended."""
         if not are_simple(state, during) or state == during or is_negative(during):
             return None
-        came = f"previously once within {duration.text} {state.at(ATOM)}"
-        return Reading((f"keep ends {during.at(ATOM)} implies not {came}",), f"where `{during.text}` has ended")
+        return self._last_of(joined([state, during], "and"), duration, during)
 
     def keep_last_of(self, state: State, duration: Duration, during: State) -> Reading | None:
         """Return the rule of `a in the last 1 s of b`."""
         if not are_simple(state, during) or state == during or is_negative(during):
             return None
-        held = f"previously historically for {duration.text} {state.at(ATOM)}"
-        return Reading((f"keep ends {during.at(ATOM)} implies {held}",), f"where `{during.text}` has ended")
+        return self._last_of(joined([state.negated(), during], "and"), duration, during)
+
+    def _last_of(self, denied: State, duration: Duration, during: State) -> Reading | None:
+        """Return the rule that something has not been in the last 1 s of b, which looks back where b has ended."""
+        steps = round(self.steps(duration), 6) - 1
+        if not steps.is_integer() or steps < 1 or not (duration.is_steps or self._step_s):
+            return None
+        came = f"previously once within {int(steps)} steps {denied.at(ATOM)}"
+        return Reading((f"keep ends {during.at(ATOM)} implies not {came}",), f"where `{during.text}` has ended")
 
     def avoid_while_except_first(self, state: State, condition: State, duration: Duration, *during: State) -> _Found:
         """Return the rule of `no a while b except for the first 1 s`, which is that of b."""

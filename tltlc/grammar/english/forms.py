@@ -41,6 +41,10 @@ _BEGUN: Final = ("begins ", "ends ")
 _BEGINNINGS: Final = frozenset("begins begin starts start becomes".split())
 _NEGATIONS: Final = frozenset("no not never avoid without cannot can't don't mustn't nor".split())
 
+_DENIED_BEHIND: Final = frozenset(("not", "never", "cannot", "can't", "mustn't", "off", "wait", "waits"))
+"""Words behind a condition that say that it must not hold."""
+_ONLY: Final = frozenset("only without unless until till before".split())
+"""Words with which a sentence that forbids something says when it is allowed."""
 _PROHIBITIONS: Final = frozenset(("avoid", "never", "no", "cannot", "can't"))
 
 
@@ -205,6 +209,8 @@ def forms(parts: Sequence[Part]) -> tuple[Form, ...]:
         return _past_forms(parts, slots, texts)
     known = [p for p in PATTERNS[key] if words[:1] not in (["keep"], ["avoid"]) or not p.clause.startswith("reach")]
     known = [pattern for pattern in known if _keeps_words(pattern, cues, slots)]
+    if not cues.isdisjoint(_NEGATIONS | _DENIED_BEHIND):
+        known = [pattern for pattern in known if _denies(pattern, cues, texts)]
     ranked = sorted(known, key=lambda pattern: -len(cues & set(pattern.cues.split())))
     fitting = [pattern for pattern in ranked if cues & set(pattern.cues.split())]
     if not fitting and len(conditions) < 3:
@@ -216,6 +222,15 @@ def forms(parts: Sequence[Part]) -> tuple[Form, ...]:
     fitting = [p for p in fitting if not (in_steps and "time_holding" in p.clause)]  # which is a time in seconds
     all_forms = (Form(p.clause.format(**texts), p.says.format(**quoted)) for p in fitting)
     return tuple({form.clause: form for form in all_forms}.values())[:_MOST_FORMS]
+
+
+def _denies(pattern: _Pattern, words: Set[str], texts: Mapping[str, str]) -> bool:
+    """Whether a form of a sentence that forbids something forbids it, too, or says when alone it is allowed."""
+    if pattern.clause.startswith("keep {p} implies once"):
+        return not words.isdisjoint(_ONLY)
+    clause = pattern.clause.format(**texts)
+    is_goal = clause.startswith(("reach not ", "require eventually within"))
+    return not is_goal and (clause.startswith("avoid ") or "not " in clause or "times(" in clause)
 
 
 def _past_forms(parts: Sequence[Part], slots: Mapping[str, State], texts: Mapping[str, str]) -> tuple[Form, ...]:
@@ -277,7 +292,8 @@ def _slots(parts: Sequence[Part], conditions: Sequence[int]) -> dict[str, State]
     first, second = conditions[:2]
     between = {part.text for part in parts[first:second] if isinstance(part, Term)}
     before = {part.text for part in parts[:first] if isinstance(part, Term)}
-    is_behind = bool(between & _BEHIND) and not before & _CONDITIONAL and not between & _IMPLICATIONS
+    is_denied = bool(between & _DENIED_BEHIND) and not between & {"then", "and"}
+    is_behind = (bool(between & _BEHIND) or is_denied) and not before & _CONDITIONAL and not between & _IMPLICATIONS
     event, answer = (second, first) if is_behind else (first, second)
     slots.update(t=states[event], r=states[answer], p=plain[answer])
     return slots
@@ -288,7 +304,7 @@ def _signed(parts: Sequence[Part], at: int) -> State:
     state, before = parts[at], _word(parts, at - 1)
     assert isinstance(state, State)
     behind = _word(parts, at + 2) if _word(parts, at + 1) in _MODALS else _word(parts, at + 1)
-    return state.negated() if before in _NEGATIONS or behind in ("not", "never") else state
+    return state.negated() if before in _NEGATIONS or behind in _DENIED_BEHIND else state
 
 
 def _word(parts: Sequence[Part], at: int) -> str:

@@ -286,7 +286,10 @@ class Intervals(Rules):
         a = state.at(ATOM)
         lasting = f"(always for {duration.text} {a}) or ({a} until {excuse.at(ATOM)})"
         return Reading(
-            (f"keep {begun_text(state)} implies {lasting}", f"avoid time_holding({state.text}) > {duration.text}")
+            (
+                f"keep {begun_text(state)} implies {lasting}",
+                f"avoid time_holding({state.text}) > {duration.text} and {excuse.negated().at(ATOM)}",
+            )
         )
 
     def stops_after(self, state: State, duration: Duration, event: State) -> list[Reading] | None:
@@ -318,7 +321,7 @@ class Intervals(Rules):
         return Reading(
             (
                 f"avoid ({begun}) then within {int(steps - spare) - 1} steps ({begun})",
-                f"keep time_holding(not {state.at(ATOM)}) < {(steps + spare) * self._step_s:.10g} s",
+                f"keep time_holding(not {begun}) <= {(steps + spare - 2) * self._step_s:.10g} s",
             )
         )
 
@@ -414,11 +417,11 @@ def _exactly_one(state: State, start: State, end: State) -> str:
 
 def _at_the_end(states: list[State], start: State, end: State) -> str:
     """Return the clause that asks, at each end of a stretch, for events in it."""
-    if len(states) == 1 and start.text == end.text and end.text.isidentifier():
+    if len(states) == 1 and start.text == end.text and not is_edge(end) and end.level == ATOM:
         begun = begun_text(end)
         inside = joined([states[0], State(f"not {begun}")], "and")
         came = f"previously (not {begun} since {inside.at(ATOM)})"
-        return f"keep {begun} and previously once {end.text} implies {came}"
+        return f"keep {begun} and previously once {end.at(ATOM)} implies {came}"
     if len(states) == 1 and _is_gap(start, end):
         state = changing(end)
         inside = joined([states[0], state.negated()], "and")

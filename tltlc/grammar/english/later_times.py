@@ -344,6 +344,10 @@ class LaterTimes(Rules):
         free = f"if no `{event.text}` may be less than {duration.text} ago, and none need have come"
         return [Reading((clause,), free), *readings]
 
+    def avoid_soon(self, state: State, duration: Duration, event: Event) -> _Found:
+        """Return the rule of `b cannot happen within 5 s of a`."""
+        return self.last([self.never_within(state, duration)], "after", event)
+
     def avoid_sooner(self, state: State, duration: Duration, event: Event) -> _Found:
         """Return the rule of `no b less than 5 s after a`."""
         return self.last([self.never_for(state, duration)], "after", event)

@@ -45,6 +45,7 @@ class Orders(Rules):
         states = [_goal(event) for event in events]
         known = [state for state in states if state is not None]
         is_clear = not any(state.text in self.exclusive for state in known)
+        is_clear = is_clear and not any(state.text.startswith("times_within(") for state in known[1:])
         return Goals(tuple(known)) if len(known) == len(states) and is_clear else None
 
     def bare_goals(self, *events: Event) -> _Found:

@@ -10,7 +10,7 @@ from tltlc.core.record import record, replace
 from tltlc.grammar.english.alternatives import Alternatives
 from tltlc.grammar.english.arguments import with_read_arguments
 from tltlc.grammar.english.bounds import Bounds
-from tltlc.grammar.english.contradictions import behind_its_event, forbids_its_event, has_empty_option
+from tltlc.grammar.english.contradictions import behind_its_count, behind_its_event, forbids_its_event, has_empty_option
 from tltlc.grammar.english.counts_since import CountsSince
 from tltlc.grammar.english.ends import end_of, with_end, with_last_seconds
 from tltlc.grammar.english.events import Crossing, as_state
@@ -58,6 +58,7 @@ _IN_TIME: Final = phrases("within", "in any", "over")
 _BEFORE_EVENTS: Final = frozenset(("while", "during", "between"))
 """Words that begin a rule of their own, and need no `keep` before them."""
 _COMING: Final = ("come", "comes")
+_FORBIDDING: Final = ("avoid", "never", "no")
 _KEYWORDS: Final = ("reach", "keep", "avoid")
 """The words with which the rules of one line begin."""
 _FEWEST_RULES: Final = 3
@@ -142,8 +143,8 @@ def _whole_sentence(words: Words) -> Sentence:
 def _with_end(words: Words) -> Sentence:
     """Return the readings of a sentence whose end, such as `unless c`, no rule of the grammar has."""
     end = end_of(words)
-    if end is None:
-        return Sentence()
+    if end is None or (end.time is not None and words.word(0) in _FORBIDDING):
+        return Sentence()  # what may excuse a second event is not what comes within a time
     if end.time is not None and end.time in f" {end.before.text} " and (shorter := _sentence(end.whole)).readings:
         return shorter
     said = _said_state(end.condition)
@@ -269,6 +270,10 @@ def sentence_of(parser: SentenceParser, terminals: Sequence[Term], words: Words)
         return Sentence()
     if not any(term.text in ("reach", "sometime") for term in terminals):
         _drop_goals(unique)
+    for key in [key for key in unique if len(key) == 1 and key[0].startswith("keep ")]:
+        if later := behind_its_count(key[0]):
+            reading = unique.pop(key)
+            unique.setdefault((later,), replace(reading, clauses=(later,)))
     empty = [key for key in unique if len(key) == 1 and has_empty_option(key[0])]
     for key in empty if len(empty) < len(unique) else ():
         del unique[key]
@@ -278,7 +283,7 @@ def sentence_of(parser: SentenceParser, terminals: Sequence[Term], words: Words)
             del unique[clauses]
             later = behind_its_event(clauses[0]) if len(clauses) == 1 else ""
             if later:
-                unique[later,] = replace(reading, clauses=(later,))
+                unique.setdefault((later,), replace(reading, clauses=(later,)))
     return Sentence(tuple(unique.values()), next(iter(rules.limits), ""))
 
 

@@ -39,6 +39,7 @@ from tltlc.grammar.mistakes.rephrasing import (
     text_of,
 )
 from tltlc.grammar.mistakes.rule_conditions import condition_behind_rule
+from tltlc.grammar.mistakes.sentences.validity import is_valid
 
 _FROM_THEN_ON: Final = {
     "keep": "write `keep b implies a` to require `a` at every step where `b` holds, or `keep b implies always a` to "
@@ -104,8 +105,9 @@ def _without_error(failure: ParseFailure) -> Diagnostic:
     sides = ((goals[-1], at), (at + 1, formula_stop(failure)))
     is_clear = len(goals) == 1 and is_clear_word(failure, "without", *sides, clause_keyword(failure))
     help_ = "use `avoid`, which begins a separate clause and applies to every step"
+    clauses = text_of(failure, 0, at), f"avoid {text_of(failure, at + 1, formula_stop(failure))}"
+    is_clear = is_clear and is_valid(clauses[1:])
     if is_clear:
-        clauses = text_of(failure, 0, at), f"avoid {text_of(failure, at + 1, formula_stop(failure))}"
         help_ = f"write `{clauses[0]}` and `{clauses[1]}`, which applies to every step"
     return failure.error("TLT0101", failure.misplaced(failure.token), help_, write="avoid" if is_clear else None)
 

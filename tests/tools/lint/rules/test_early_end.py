@@ -18,7 +18,7 @@ BEFORE = f"clock 1 Hz\n{SIGNALS}"
         ("require not a until (b then c)", "not a until (c and previously once b)"),
         (
             "keep c implies not a until (b then (c and b) then a)",
-            "not a until (a and previously once ((c and b) and previously once b))",
+            "a and once b",
         ),
         ("require not a until (b then within 2 s c)", "c and once b"),
     ],

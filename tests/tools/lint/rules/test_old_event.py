@@ -12,13 +12,14 @@ from tests.tools.lint.helpers import accepted_traces, block, codes, findings_in
     [
         (
             "keep begins a implies once begins b",
-            "write `keep begins a implies previously (not begins a since begins b)`",
+            "write `keep begins a implies begins b or previously (not begins a since begins b)`",
         ),
         (
             "keep ends a and c implies once (begins b and not c)",
-            "write `keep ends a and c implies previously (not ends a since (begins b and not c))`",
+            "write `keep ends a and c implies (begins b and not c) or "
+            "previously (not ends a since (begins b and not c))`",
         ),
-        ("keep begins a implies (c and once ends b)", "write `previously (not begins a since ends b)`"),
+        ("keep begins a implies (c and once ends b)", "write `(ends b or previously (not begins a since ends b))`"),
     ],
 )
 def test_an_event_that_asks_for_another_one_gets_a_note(clause: str, offered: str) -> None:
@@ -30,10 +31,11 @@ def test_an_event_that_asks_for_another_one_gets_a_note(clause: str, offered: st
 def test_the_offered_rule_asks_for_a_new_one() -> None:
     typed, offered = (
         accepted_traces(block(f"keep begins a implies {answer}"), "ab", 4)
-        for answer in ("once begins b", "previously (not begins a since begins b)")
+        for answer in ("once begins b", "begins b or previously (not begins a since begins b)")
     )
     assert ("b", "a", "", "a") in typed - offered
     assert ("b", "a", "b", "a") in offered
+    assert ("ab",) in offered
     assert offered < typed
 
 

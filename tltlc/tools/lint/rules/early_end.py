@@ -18,13 +18,16 @@ def check(view: FileView) -> Iterator[RuleFinding]:
     same way, it need not hold from b to c.
     """
     for spec in view.specs:
-        for part in (part for formula in spec.formulas() for part in formula.parts()):
+        for root, part in ((formula, part) for formula in spec.formulas() for part in formula.parts()):
             if isinstance(part.tree, BinaryExpr) and part.tree.op in ("U", "W"):
                 end = without_brackets(part.tree.right)
                 if isinstance(end, Unary) and end.op == "F":
                     yield _finding(part, part.with_tree(part.tree.left), part.with_tree(end))
                 elif isinstance(end, BinaryExpr) and end.op == "then":
-                    yield _finding_of_goals(part, part.with_tree(part.tree.left), part.with_tree(end))
+                    is_whole = without_brackets(root.tree) is part.tree
+                    yield _finding_of_goals(
+                        part, part.with_tree(part.tree.left), part.with_tree(end), is_whole=is_whole
+                    )
 
 
 def _finding(until: ScopedExpression, first: ScopedExpression, end: ScopedExpression) -> RuleFinding:
@@ -41,7 +44,10 @@ def _finding(until: ScopedExpression, first: ScopedExpression, end: ScopedExpres
     return RuleFinding(f"this `{word}` may end before `{goal.text}`", (label,), help_)
 
 
-def _finding_of_goals(until: ScopedExpression, first: ScopedExpression, end: ScopedExpression) -> RuleFinding:
+def _finding_of_goals(
+    until: ScopedExpression, first: ScopedExpression, end: ScopedExpression, *, is_whole: bool
+) -> RuleFinding:
+    """Return the finding; in an answer, a goal before the event of the rule must not count: no short text says that."""
     assert isinstance(until.tree, BinaryExpr)
     goals = [end.with_tree(goal) for goal in operands(end.tree, "then")]
     word, last = until.source.slice(until.tree.op_span), goals[-1]
@@ -53,7 +59,8 @@ def _finding_of_goals(until: ScopedExpression, first: ScopedExpression, end: Sco
         f"if `{first.text}` must hold until `{last.text}`, write `{operand_text(first)} {word} {came}`; else allow "
         "this with the comment `// tltlc: allow TLT0473`"
     )
-    if any(isinstance(part, BinaryExpr) and part.bound is not None for part in parts(end.tree)):
+    is_timed = any(isinstance(part, BinaryExpr) and part.bound is not None for part in parts(end.tree))
+    if is_timed or not is_whole:
         help_ = (
             f"say what holds at its end, such as `{operand_text(last)} and once {operand_text(goals[0])}`; else allow "
             "this with the comment `// tltlc: allow TLT0473`"

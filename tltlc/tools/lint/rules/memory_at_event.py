@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from tltlc.core.source import Span
 from tltlc.grammar.past_words import OF_EVENTS
 from tltlc.grammar.tree import BinaryExpr, CallExpr, Clause, Expr, Unary
-from tltlc.grammar.walk import conjuncts, operands
+from tltlc.grammar.walk import conjuncts, operands, parts
 from tltlc.resolve.memory import PAST
 from tltlc.resolve.scope import MEMORY_FUNCTIONS
 from tltlc.tools.lint.asked_results import AskedResult, asked_results
@@ -43,10 +43,10 @@ def _joint_parts(clause: Clause, value: ScopedExpression) -> Iterator[list[Scope
         yield [value.with_tree(without_brackets(part)) for part in conjuncts(without_brackets(value.tree))]
     for asked in asked_results(clause, value):
         if not asked.steps:
-            parts = [asked.condition.with_tree(without_brackets(part)) for part in conjuncts(asked.condition.tree)]
+            beside = [asked.condition.with_tree(without_brackets(part)) for part in conjuncts(asked.condition.tree)]
             answers = [asked.part.with_tree(without_brackets(part)) for part in operands(asked.part.tree, "or")]
             # TLT0432 has an answer that never holds.
-            yield [*parts, *(part for part in answers if answers[1:] or not _is_least(part.tree))]
+            yield [*beside, *(part for part in answers if answers[1:] or not _is_least(part.tree))]
 
 
 def _ended(joint: list[ScopedExpression], view: FileView) -> Iterator[RuleFinding]:
@@ -79,7 +79,8 @@ def _held(tree: Expr) -> CallExpr | None:
 
 
 def _findings(asked: AskedResult, view: FileView) -> Iterator[RuleFinding]:
-    if not asked.part.depends_on_one_step():
+    calls = [part for part in parts(asked.part.tree) if isinstance(part, CallExpr) and part.name in OF_EVENTS]
+    if not calls or not asked.part.depends_on_one_step():
         return
     conditions = [asked.condition.with_tree(part) for part in conjuncts(asked.condition.tree)]
     begun = [part.children()[0] for part in conditions if _is_beginning(part)]

@@ -54,8 +54,8 @@ def _asked_event(answer: ScopedExpression) -> ScopedExpression | None:
 
 def _finding(asked: AskedResult, event: ScopedExpression, earlier: ScopedExpression, *, is_whole: bool) -> RuleFinding:
     label = Label(earlier.source, asked.part.tree.span, f"one of these is enough for every later `{event.text}`")
-    since = f"previously (not {event.text} since {operand_text(earlier)})"
-    offered = f"keep {asked.condition.text} implies {since}" if is_whole else since
+    since = f"{operand_text(earlier)} or previously (not {event.text} since {operand_text(earlier)})"
+    offered = f"keep {asked.condition.text} implies {since}" if is_whole else f"({since})"
     help_ = (
         f"if each `{event.text}` needs one since the last, write `{offered}`; if one is enough for all, allow this "
         "with the comment `// tltlc: allow TLT0489`"
