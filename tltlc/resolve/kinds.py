@@ -71,13 +71,13 @@ def lookup(use: NameExpr | CallExpr, env: Env, kinds: tuple[BindingKind, ...], n
         raise problem("TLT0201", title, source, span, advice=f"for the function, write `{form}`")
     if use.name == "time" and source.text[span.end :].lstrip().startswith("since "):
         advice = "`time_since` is one word: write it as in `time_since(p) < 5 s`"
-        found: tuple[Fix, ...] = ()
+        time_fixes: tuple[Fix, ...] = ()
         event = _SINCE.match(source.text, span.end)
         if event is not None and event[1] in env.scope.names:
             text = f"time_since({event[1]})"
             advice = f"`time_since` is one word: write `{text}`"
-            found = (replacement_fix(source, Span(span.start, event.end()), text),)
-        raise problem("TLT0201", title, source, span, advice=advice, fixes=found)
+            time_fixes = (replacement_fix(source, Span(span.start, event.end()), text),)
+        raise problem("TLT0201", title, source, span, advice=advice, fixes=time_fixes)
     if use.name == "time" and isinstance(use, NameExpr):
         advice = (
             "`total_time(true)` is the time so far; for a time that the game records, declare it: "

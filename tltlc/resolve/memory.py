@@ -12,7 +12,7 @@ from typing import Final
 
 from tltlc.core.record import replace
 from tltlc.core.source import Span
-from tltlc.diagnostics.diagnostic import Fix, Label, replacement_fix
+from tltlc.diagnostics.diagnostic import Label
 from tltlc.expression.tree import Before, Condition, Const, Expression, Op, SignalValue, When, depth
 from tltlc.grammar.past_words import FUNCTIONS, MOST_STEPS_BACK, OF_EVENTS
 from tltlc.grammar.tree import (
@@ -21,9 +21,7 @@ from tltlc.grammar.tree import (
     Expr,
     GroupExpr,
     IsExpr,
-    NameExpr,
     NumberExpr,
-    TemporalInterval,
     Unary,
 )
 from tltlc.io.limits import ARITHMETIC
@@ -34,6 +32,7 @@ from tltlc.resolve import registers, units
 from tltlc.resolve.constants import number, samples, seconds
 from tltlc.resolve.counts_within import Window
 from tltlc.resolve.elapsed import timers_of
+from tltlc.resolve.looking_back import looking_back
 from tltlc.resolve.problem import ResolutionError, problem
 from tltlc.resolve.recall import check_closed, up_to
 from tltlc.resolve.registers import RegisterDraft
@@ -59,7 +58,6 @@ _WITH_LENGTH: Final = ("times_within", "total_time_within", "highest_within", "l
 """The functions of the last seconds."""
 _MOST_NESTED: Final = 16
 """The most functions of the past that may stand inside each other."""
-_TWO_STEPS: Final = 2
 _LONGEST: Final = 10_000
 """About the most letters of a formula or a number that an operator or function of the past may have as its operand.
 
@@ -135,43 +133,10 @@ def _window(expr: Unary, operand: Formula, env: Env) -> Formula:
     return _atom(name, value, expr.span, env)
 
 
-def _looking_back(expr: Expr, env: Env) -> Fix | None:
-    """Return the fix for `a then b then c`: the same, said at the step of c; None for other formulas."""
-    while isinstance(expr, GroupExpr):
-        expr = expr.inner
-    if not isinstance(expr, BinaryExpr) or expr.op != "then":
-        return None
-    said, rest = _operand_text(expr.left, env), expr
-    while True:
-        later = rest.right.left if isinstance(rest.right, BinaryExpr) and rest.right.op == "then" else rest.right
-        said = f"{_operand_text(later, env)} and {_earlier(rest.bound, env)} {said}"
-        if later is rest.right:
-            break
-        assert isinstance(rest.right, BinaryExpr)
-        said, rest = f"({said})", rest.right
-    return replacement_fix(env.scope.source, expr.span, said)
-
-
-def _operand_text(expr: Expr, env: Env) -> str:
-    text = " ".join(env.scope.source.slice(expr.span).split())
-    return text if isinstance(expr, (NameExpr, GroupExpr)) else f"({text})"
-
-
-def _earlier(bound: TemporalInterval | None, env: Env) -> str:
-    """Return the operators that say at a later step of `then` that the formula before it has held in time."""
-    if bound is None:
-        return "previously once"
-    if env.context.clock_varies:
-        return f"once within {env.scope.source.slice(bound.high.span)}"
-    steps = samples(bound.high, env)
-    unit = "step" if steps == _TWO_STEPS else "steps"
-    return f"previously once within {steps - 1} {unit}" if steps > 1 else "previously"
-
-
 def _check_operand(operand: Formula, expr: Expr, env: Env) -> None:
     """Check the operand of an operator or function of the past, before a name is made of its text."""
     if any(part.is_temporal for part in operand.walk()):
-        fix = _looking_back(expr, env)
+        fix = looking_back(expr, env)
         advice = "let operators such as `eventually` and `until` stand outside, as in `eventually once p`"
         if fix is not None:
             advice = f"write `{fix.edits[0].text}`, which looks back from the last of them"

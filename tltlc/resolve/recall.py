@@ -142,9 +142,9 @@ def _open_error(value: Quantity, expr: Expr, env: Env, advice: str) -> Resolutio
 
 def with_all_maxima(error: ResolutionError, expr: BinaryExpr, env: Env) -> ResolutionError:
     """Return an error for a count without a maximum with the maxima of all counts and times of its comparison."""
-    found = error.diagnostic
+    diagnostic = error.diagnostic
     calls = [part for part in parts(expr) if isinstance(part, CallExpr) and _may_be_open(part, env)]
-    if found is None or found.code != "TLT0321" or len(calls) < _SEVERAL:
+    if diagnostic is None or diagnostic.code != "TLT0321" or len(calls) < _SEVERAL:
         return error
     source, edits = env.scope.source, []
     for call in sorted(calls, key=lambda call: call.span.end):
@@ -160,7 +160,7 @@ def with_all_maxima(error: ResolutionError, expr: BinaryExpr, env: Env) -> Resol
         f"write the greatest value that one play can reach in each, e.g. `{text}`: from there on, they stay at it, and "
         "no difference is seen"
     )
-    return ResolutionError(replace(found, help=help_, fixes=(Fix(f"Write `{text}`", tuple(edits)),)))
+    return ResolutionError(replace(diagnostic, help=help_, fixes=(Fix(f"Write `{text}`", tuple(edits)),)))
 
 
 def _may_be_open(call: CallExpr, env: Env) -> bool:

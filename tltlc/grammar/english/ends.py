@@ -83,9 +83,9 @@ def with_end(reading: Reading, end: End, condition: State) -> Reading | None:
     changed = _changed(reading.clauses[0], end, condition) if len(reading.clauses) == 1 else None
     if changed is None:
         return None
-    said = [part for part in (reading.condition, changed.where) if part]
-    joint = ", and ".join((*said[:1], *(part.removeprefix("if ") for part in said[1:])))
-    return Reading((changed.clause,), joint)
+    labels = [label for label in (reading.condition, changed.where) if label]
+    label = ", and ".join((*labels[:1], *(later.removeprefix("if ") for later in labels[1:])))
+    return Reading((changed.clause,), label)
 
 
 def with_last_seconds(reading: Reading, excuse: State) -> list[Reading]:
@@ -94,13 +94,13 @@ def with_last_seconds(reading: Reading, excuse: State) -> list[Reading]:
     Only the reading itself if its clause does not end in the excuse, or is about no last seconds.
     """
     clause = reading.clauses[0]
-    time, said = last_seconds(clause), excuse.at(ATOM)
-    kept, forbidden = f" or {said}", f" and {excuse.negated().at(ATOM)}"
+    time, operand = last_seconds(clause), excuse.at(ATOM)
+    kept, forbidden = f" or {operand}", f" and {excuse.negated().at(ATOM)}"
     implied = f" implies {excuse.at(OR)}"
-    end = next((each for each in (kept, forbidden, implied) if clause.endswith(each)), "")
+    end = next((ending for ending in (kept, forbidden, implied) if clause.endswith(ending)), "")
     if reading.condition or reading.clauses[1:] or not time or not end or excuse.text.startswith(_PAST):
         return [reading]
-    wide = f"once within {time} {said}"
+    wide = f"once within {time} {operand}"
     longer = {kept: f" or {wide}", forbidden: f" and not {wide}", implied: f" implies {wide}"}[end]
     return [
         Reading((clause.removesuffix(end) + longer,), f"if it excuses what comes up to {time} later, too"),

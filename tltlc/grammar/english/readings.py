@@ -147,11 +147,11 @@ def _with_end(words: Words) -> Sentence:
         return Sentence()  # what may excuse a second event is not what comes within a time
     if end.time is not None and end.time in f" {end.before.text} " and (shorter := _sentence(end.whole)).readings:
         return shorter
-    said = _said_state(end.condition)
-    readings = sentence(end.before).readings if said is not None else ()
+    condition = _said_state(end.condition)
+    readings = sentence(end.before).readings if condition is not None else ()
     if len(readings) == 1 and readings[0].condition:
         return Sentence()  # it may mean something else, too
-    ended = [with_end(reading, end, said) for reading in readings if said is not None]
+    ended = [with_end(reading, end, condition) for reading in readings if condition is not None]
     known = [reading for reading in ended if reading is not None and is_valid(reading.clauses)]
     is_all = len(known) == len(readings) or end.time is not None
     return Sentence(tuple(known) if is_all else ())

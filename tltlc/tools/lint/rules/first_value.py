@@ -21,9 +21,9 @@ def check(view: FileView) -> Iterator[RuleFinding]:
     for spec in view.specs:
         for clause, value in spec.clauses("keep", "require"):
             for asked in asked_results(clause, value):
-                found = None if asked.steps else _value_before(asked)
-                if found is not None and found[0].name not in view.env.scope.names:
-                    yield _finding(asked, *found, is_whole=asked.is_all_of(clause, value))
+                compared = None if asked.steps else _value_before(asked)
+                if compared is not None and compared[0].name not in view.env.scope.names:
+                    yield _finding(asked, *compared, is_whole=asked.is_all_of(clause, value))
 
 
 def _value_before(asked: AskedResult) -> tuple[CallExpr, ScopedExpression] | None:
