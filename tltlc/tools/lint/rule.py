@@ -33,13 +33,16 @@ class LintRule:
 
     ``check`` is a pure function from a file to findings. ``supersedes`` lists the codes of less
     specific diagnostics. Such a diagnostic is dropped if each of its labels covers a label of a finding
-    that supersedes it, unless the diagnostic is more severe than the finding.
+    that supersedes it, unless the diagnostic is more severe than the finding. ``lint_only`` is for rules
+    about training, names or sizes: ``tltlc check``, which asks whether a spec means what was meant,
+    leaves their findings out.
     """
 
     code: str
     severity: Severity
     check: Callable[[FileView], Iterable[RuleFinding]]
     supersedes: tuple[str, ...] = ()
+    lint_only: bool = False
 
 
 @record

@@ -82,7 +82,8 @@ def command(
 ) -> int:
     """Report all errors and warnings of each SPEC (a file, FILE:NAME, an artefact, or - for standard input).
 
-    The warnings include the probable mistakes in specs that `tltlc lint` finds, but not its notes, nor what is unused.
+    These include the probable mistakes in specs that `tltlc lint` finds, but not its advice about training, sizes and
+    what is unused.
     In a folder, all .tltl files are checked, also those in subfolders. The default is the current folder.
     With --game, the command also plays each scene of a game twice, and reports what the game offers, how fast it is,
     and whether equal seeds and actions give equal plays. With --level, it also reports what a spec needs but a level of

@@ -58,4 +58,4 @@ def _awaited(fspa: Fspa, flat: Set[int]) -> list[int]:
     return sorted(indices)
 
 
-RULE = LintRule("TLT0417", "note", check)
+RULE = LintRule("TLT0417", "note", check, lint_only=True)

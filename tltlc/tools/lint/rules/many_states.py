@@ -50,4 +50,4 @@ def _finding(spec: SpecView, states: int) -> RuleFinding:
     return RuleFinding(title, (Label(first.source, first.span, message), *rest), help_)
 
 
-RULE = LintRule("TLT0423", "note", check)
+RULE = LintRule("TLT0423", "note", check, lint_only=True)

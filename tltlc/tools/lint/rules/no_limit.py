@@ -38,4 +38,4 @@ def _finding(spec: SpecView) -> RuleFinding:
     return RuleFinding(f"`{spec.spec.name}` has no limit", (spec.name_label(message),), help_)
 
 
-RULE = LintRule("TLT0419", "note", check)
+RULE = LintRule("TLT0419", "note", check, lint_only=True)

@@ -34,4 +34,4 @@ def _has_recurrence(formula: Formula) -> bool:
     return any(part.op == "G" and part.args[0].op == "F" for part in formula.walk())
 
 
-RULE = LintRule("TLT0420", "note", check)
+RULE = LintRule("TLT0420", "note", check, lint_only=True)

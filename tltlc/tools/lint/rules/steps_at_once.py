@@ -148,4 +148,4 @@ def _length(fspa: Fspa) -> tuple[int, int]:
     return fspa.states[0].distance or 0, fspa.spec_size
 
 
-RULE = LintRule("TLT0415", "note", check)
+RULE = LintRule("TLT0415", "note", check, lint_only=True)

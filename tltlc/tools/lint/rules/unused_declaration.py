@@ -109,4 +109,4 @@ def _is_refined(declaration: _CheckedDeclaration, view: FileView) -> bool:
     )
 
 
-RULE = LintRule("TLT0421", "warning", check)
+RULE = LintRule("TLT0421", "warning", check, lint_only=True)

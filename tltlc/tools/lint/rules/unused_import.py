@@ -102,4 +102,4 @@ def _effective_modules(modules: Iterable[LoadedModule]) -> set[int]:
     return effective
 
 
-RULE = LintRule("TLT0422", "warning", check)
+RULE = LintRule("TLT0422", "warning", check, lint_only=True)
