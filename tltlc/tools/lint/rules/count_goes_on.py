@@ -35,16 +35,16 @@ def _findings(limit: ScopedExpression, call: CallExpr) -> Iterator[RuleFinding]:
     counted, start = (without_brackets(argument.value) for argument in call.arguments[:2])
     if not isinstance(start, Unary) or start.op not in ("begins", "ends") or _names(start) & _names(counted):
         return
-    state = limit.with_tree(without_brackets(start.operand))
+    state, start_text = limit.with_tree(without_brackets(start.operand)), limit.with_tree(start).text
     where, title = operand_text(state), f"this also counts where `{state.text}` does not hold"
     goes_on = f"this goes on after `{state.text}` ends, and counts before its first beginning"
     if start.op == "ends":
         where, title = negated_text(state), f"this also counts where `{state.text}` holds"
         goes_on = f"this goes on when `{state.text}` begins again, and counts before its first end"
     help_ = (
+        f"if it counts until `{start_text}` comes again, allow this with the comment `// tltlc: allow TLT0470`; "
         f"if only steps {'with' if start.op == 'begins' else 'without'} `{state.text}` count, write "
-        f"`keep {where} implies {limit.text}`; if all steps count, allow this with the comment "
-        "`// tltlc: allow TLT0470`"
+        f"`keep {where} implies {limit.text}`"
     )
     yield RuleFinding(title, (Label(limit.source, call.span, goes_on),), help_)
 

@@ -5,14 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from tltlc.diagnostics.diagnostic import Label
-from tltlc.grammar.tree import Expr, Unary
-from tltlc.grammar.walk import conjuncts
+from tltlc.grammar.tree import Unary
 from tltlc.tools.lint.asked_results import AskedResult, asked_results
+from tltlc.tools.lint.edges import edge_of
 from tltlc.tools.lint.file_view import FileView, ScopedExpression, operand_text, without_brackets
 from tltlc.tools.lint.names import mentioned_signals
 from tltlc.tools.lint.rule import LintRule, RuleFinding
-
-_EDGES = ("begins", "ends")
 
 
 def check(view: FileView) -> Iterator[RuleFinding]:
@@ -24,23 +22,12 @@ def check(view: FileView) -> Iterator[RuleFinding]:
     for spec in view.specs:
         for clause, value in spec.clauses("keep", "require"):
             for asked in asked_results(clause, value):
-                event, earlier = _edge(asked.condition), _asked_event(asked.part)
+                event, earlier = edge_of(asked.condition), _asked_event(asked.part)
                 if event is None or earlier is None or asked.steps:
                     continue
                 scope = asked.part.env.scope
                 if not mentioned_signals(earlier.tree, scope) & mentioned_signals(event.tree, scope):
                     yield _finding(asked, event, earlier, is_whole=asked.is_all_of(clause, value))
-
-
-def _edge(part: ScopedExpression) -> ScopedExpression | None:
-    """Return the beginning or the end that a condition has; None if it has none."""
-    edges = (tree for tree in map(without_brackets, conjuncts(part.tree)) if _is_edge(tree))
-    tree = next(edges, None)
-    return None if tree is None else part.with_tree(tree)
-
-
-def _is_edge(tree: Expr) -> bool:
-    return isinstance(tree, Unary) and tree.op in _EDGES
 
 
 def _asked_event(answer: ScopedExpression) -> ScopedExpression | None:
@@ -49,7 +36,7 @@ def _asked_event(answer: ScopedExpression) -> ScopedExpression | None:
     if not isinstance(tree, Unary) or tree.op != "once" or tree.bound is not None:
         return None
     inner = answer.with_tree(without_brackets(tree.operand))
-    return inner if _edge(inner) is not None else None
+    return inner if edge_of(inner) is not None else None
 
 
 def _finding(asked: AskedResult, event: ScopedExpression, earlier: ScopedExpression, *, is_whole: bool) -> RuleFinding:
