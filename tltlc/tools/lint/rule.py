@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from typing import TYPE_CHECKING
 
 from tltlc.core.record import record
@@ -35,7 +35,8 @@ class LintRule:
     specific diagnostics. Such a diagnostic is dropped if each of its labels covers a label of a finding
     that supersedes it, unless the diagnostic is more severe than the finding. ``lint_only`` is for rules
     about training, names or sizes: ``tltlc check``, which asks whether a spec means what was meant,
-    leaves their findings out.
+    leaves their findings out. ``join`` replaces several findings in a file by fewer that say the same
+    (:func:`tltlc.tools.lint.joining.joined`).
     """
 
     code: str
@@ -43,6 +44,7 @@ class LintRule:
     check: Callable[[FileView], Iterable[RuleFinding]]
     supersedes: tuple[str, ...] = ()
     lint_only: bool = False
+    join: Callable[[Sequence[Diagnostic]], tuple[Diagnostic, ...]] | None = None
 
 
 @record

@@ -42,8 +42,8 @@ def command(paths: tuple[str, ...], fixing: bool, settings: CompileSettings, for
     from tltlc.interfaces.cli.folders import every_source, links_outside
     from tltlc.interfaces.cli.report import Report, count_text, tally
     from tltlc.tools.lint.importers import importer_names, names_used_elsewhere
+    from tltlc.tools.lint.joining import joined
     from tltlc.tools.lint.neighbours import neighbours
-    from tltlc.tools.lint.rules import unused_declaration
 
     with Report(format) as report:
         files = every_source(paths or (".",), report)
@@ -58,7 +58,7 @@ def command(paths: tuple[str, ...], fixing: bool, settings: CompileSettings, for
                 )
             except TltlError as error:
                 diagnostics = error.diagnostics
-            report.add(unused_declaration.joined(diagnostics) if format == "text" else diagnostics)
+            report.add(joined(diagnostics) if format == "text" else diagnostics)
         if len(files) > 1 or not report.diagnostics:
             report.say(f"{count_text(len(files), 'file')}: {tally(report.diagnostics)}")
     return report.status or _status(report.diagnostics)

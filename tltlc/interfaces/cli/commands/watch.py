@@ -64,8 +64,8 @@ def _check_files(arguments: tuple[str, ...], settings: CompileSettings) -> None:
     from tltlc.interfaces.cli.report import Report, count_text, tally
     from tltlc.io.access_log import log_lookup
     from tltlc.tools.lint.importers import importer_names, names_used_elsewhere
+    from tltlc.tools.lint.joining import joined
     from tltlc.tools.lint.neighbours import neighbours
-    from tltlc.tools.lint.rules import unused_declaration
 
     report = Report()
     paths = every_source(arguments, report)
@@ -83,7 +83,7 @@ def _check_files(arguments: tuple[str, ...], settings: CompileSettings) -> None:
             report.add(error.diagnostics)
             continue
         failed = [result.failure for result in results if result.failure]
-        report.add([*unused_declaration.joined(finding.diagnostic for finding in findings), *failed])
+        report.add([*joined(finding.diagnostic for finding in findings), *failed])
         passed, failures = passed + len(results) - len(failed), failures + failed
     summary = [tally(diagnostic for diagnostic in report.diagnostics if diagnostic not in failures)]
     summary += [f"{count_text(passed, 'test')} passed"] if passed else []

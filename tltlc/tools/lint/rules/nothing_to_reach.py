@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
+from tltlc.core.record import replace
+from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.logic.formula import Formula
 from tltlc.tools.lint.file_view import FileView, SpecView
+from tltlc.tools.lint.listed_names import listed_names
 from tltlc.tools.lint.rule import LintRule, RuleFinding
 
 
@@ -34,4 +37,10 @@ def _has_recurrence(formula: Formula) -> bool:
     return any(part.op == "G" and part.args[0].op == "F" for part in formula.walk())
 
 
-RULE = LintRule("TLT0420", "note", check, lint_only=True)
+def join(group: Sequence[Diagnostic]) -> tuple[Diagnostic, ...]:
+    """Return one finding for all of a file."""
+    title = f"{len(group):,} specs have no goal, so they are judged at their limits: {listed_names(group)}"
+    return (replace(group[0], title=title),)
+
+
+RULE = LintRule("TLT0420", "note", check, lint_only=True, join=join)

@@ -2,21 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Container, Iterable, Iterator
+from collections.abc import Container, Iterator, Sequence
 from typing import Final, Union
 
 from tltlc.core.record import replace
-from tltlc.core.source import SourceFile, Span
-from tltlc.diagnostics.diagnostic import Diagnostic, Severity
+from tltlc.core.source import Span
+from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.grammar.tree import EntityDecl, GroupDecl, LetDecl, ParamDecl, PredicateDecl, SignalDecl
 from tltlc.tools.lint.file_view import FileView
+from tltlc.tools.lint.listed_names import listed_names
 from tltlc.tools.lint.removal import item_removal_spans, removal_span
 from tltlc.tools.lint.rule import LintRule, RuleFinding, removal_fix
 
 _KINDS: Final = {SignalDecl: "signal", ParamDecl: "param", PredicateDecl: "predicate", LetDecl: "let"}
 _COLUMNS: Final = "a column of a recording needs no declaration"
-_MOST_NAMES: Final = 20
-"""The most names in the title of a finding that stands for several."""
 _CheckedDeclaration = Union[SignalDecl, ParamDecl, PredicateDecl, LetDecl]
 
 
@@ -40,35 +39,18 @@ def check(view: FileView) -> Iterator[RuleFinding]:
             yield _finding(_KINDS[type(declaration)], declaration.name, declaration.name_span, (removed,), view)
 
 
-def joined(diagnostics: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
-    """Replace the findings of this rule that have a fix by one, if there are several in a file.
-
-    It is at the place of the first one, and lists the names. The other diagnostics stay as they are.
-    """
-    by_file: dict[tuple[SourceFile, Severity], list[Diagnostic]] = {}
-    for diagnostic in (kept := [*diagnostics]):
-        if diagnostic.code == RULE.code and diagnostic.fixes:
-            by_file.setdefault((diagnostic.labels[0].source, diagnostic.severity), []).append(diagnostic)
-    several = {group[0]: group for group in by_file.values() if len(group) > 1}
-    left_out = {diagnostic for first, group in several.items() for diagnostic in group if diagnostic != first}
-    return tuple(
-        _for_all(several[diagnostic]) if diagnostic in several else diagnostic
-        for diagnostic in kept
-        if diagnostic not in left_out
-    )
-
-
-def _for_all(group: list[Diagnostic]) -> Diagnostic:
-    """Return one finding for several unused declarations of a file."""
-    first = group[0]
-    labels = [diagnostic.labels[0] for diagnostic in group]
-    names = [f"`{label.source.slice(label.span)}`" for label in labels[:_MOST_NAMES]]
-    more = f" and {len(group) - _MOST_NAMES:,} more" if len(group) > _MOST_NAMES else ""
-    title = f"nothing uses {len(group):,} declarations: {', '.join(names)}{more}"
+def join(group: Sequence[Diagnostic]) -> tuple[Diagnostic, ...]:
+    """Return one finding for those of a file that have a fix, if there are several, and the others unchanged."""
+    fixable = [diagnostic for diagnostic in group if diagnostic.fixes]
+    if len(fixable) < 2:
+        return (*group,)
+    first, others = fixable[0], [diagnostic for diagnostic in group if not diagnostic.fixes]
+    title = f"nothing uses {len(fixable):,} declarations: {listed_names(fixable)}"
     help_ = "use them, or remove them with `tltlc lint --fix`"
-    if any(_COLUMNS in (diagnostic.help or "") for diagnostic in group):
+    if any(_COLUMNS in (diagnostic.help or "") for diagnostic in fixable):
         help_ += f"; {_COLUMNS}"
-    return replace(first, title=title, labels=(replace(labels[0], message="the first of them"),), help=help_)
+    label = replace(first.labels[0], message="the first of them")
+    return replace(first, title=title, labels=(label,), help=help_), *others
 
 
 def _entities(declaration: EntityDecl, used_names: Container[str], view: FileView) -> Iterator[RuleFinding]:
@@ -109,4 +91,4 @@ def _is_refined(declaration: _CheckedDeclaration, view: FileView) -> bool:
     )
 
 
-RULE = LintRule("TLT0421", "warning", check, lint_only=True)
+RULE = LintRule("TLT0421", "warning", check, lint_only=True, join=join)
