@@ -190,6 +190,15 @@ class Speaker:
         rest = [done[part] for part in parts]
         return edges[0] if len(edges) + len(rest) == 1 else rebuild(node, (*edges, *rest))
 
+    def turns(self, literals: Sequence[Formula]) -> tuple[list[str], list[Formula]]:
+        """Return what begins or ends by these literals, such as "seen begins", and the literals that are left."""
+        texts, rest = [], list(literals)
+        for operand, verb, members in self._edges:
+            if all(part in rest for part in members):
+                rest = [part for part in rest if part not in members]
+                texts.append(f"{self.object_text(operand)} {verb}s")
+        return texts, rest
+
     def _answers(self, node: Formula, done: Mapping[Formula, Formula]) -> Formula | None:
         """Return ``G !late & G(due -> X true)`` as "whenever alarm, reach hidden within 5 s", else None.
 

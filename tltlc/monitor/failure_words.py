@@ -39,9 +39,11 @@ def failure_words(fspa: Fspa, failed: Failure, steps: int | None = None, time: s
 
 def cause_words(fspa: Fspa, cause: Cause) -> str:
     """Return what is true at the step that breaks a clause: "`at(boss)` without `has(sword)`"."""
-    true = [atom_words(fspa, atom) for atom, polarity in cause.prime if polarity]
+    literals = {_literal(fspa, atom, holds=polarity): (atom, polarity) for atom, polarity in cause.prime}
+    turns, rest = Speaker(fspa).turns(tuple(literals))
+    true = [*turns, *(atom_words(fspa, atom) for atom, polarity in map(literals.__getitem__, rest) if polarity)]
     false: list[str] = []
-    for atom, polarity in cause.prime:
+    for atom, polarity in map(literals.__getitem__, rest):
         if not polarity:
             if fspa.atoms[atom].opposite is None:
                 false.append(atom_words(fspa, atom))
@@ -59,8 +61,12 @@ def atom_words(fspa: Fspa, atom: int, *, holds: bool = True) -> str:
 
     Unless it ``holds``, return its negation.
     """
+    return words_text(with_opposites(spoken(_literal(fspa, atom, holds=holds), fspa)))
+
+
+def _literal(fspa: Fspa, atom: int, *, holds: bool) -> f.Formula:
     literal = f.atom(fspa.atoms[atom].name)
-    return words_text(with_opposites(spoken(literal if holds else f.not_(literal), fspa)))
+    return literal if holds else f.not_(literal)
 
 
 def atom_titles(fspa: Fspa) -> tuple[str, ...]:

@@ -227,12 +227,28 @@ def test_an_artefact_knows_the_clauses_but_not_their_lines(tltlc) -> None:  # ty
 
 
 def test_what_remains_is_told_of_a_trace_that_is_too_short(tltlc) -> None:  # type: ignore[no-untyped-def]
-    remains, last = tltlc("monitor", "boss.tltl", trace("0,1,50")).err.splitlines()
-    assert (remains, last) == (
+    assert tltlc("monitor", "boss.tltl", trace("0,1,50")).err.splitlines() == [
+        "boss.tltl:6: reach boss_door",
+        "not met at step 1, the last: boss_door is false",
         "what remains: Reach boss_door, avoid (boss_door and not (sword now or before)) throughout, "
         "and keep health > 20 throughout.",
         "not accepted: pending after 1 step",
+    ]
+
+
+def test_each_clause_that_is_not_met_is_told_with_what_it_looks_at(tltlc) -> None:  # type: ignore[no-untyped-def]
+    text = (
+        "spec boss {\n    reach times(sword) >= 2 and health > 40\n    reach boss_door then sword\n    reach sword\n}\n"
     )
+    Path("boss.tltl").write_text(SPEC.partition("spec")[0] + text)
+    lines = tltlc("monitor", "boss.tltl", trace("1,0,50", "0,1,60", "1,0,30")).err.splitlines()
+    assert lines[:2] == [
+        "boss.tltl:6: reach times(sword) >= 2 and health > 40",
+        "not met at step 3, the last: times(sword) is 1, health is 30",
+    ]
+    assert [line for line in lines if line.startswith("boss.tltl")] == lines[:1]
+    lines = tltlc("monitor", "boss.tltl", trace("0,1,50", "1,0,60", "0,0,30")).err.splitlines()
+    assert lines[2:4] == ["boss.tltl:7: reach boss_door then sword", "not met at step 3, the last: sword is false"]
 
 
 def test_a_test_that_expects_another_verdict_says_why_the_trace_fails(tltlc) -> None:  # type: ignore[no-untyped-def]

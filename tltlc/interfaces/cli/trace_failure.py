@@ -50,6 +50,10 @@ class TraceFailure:
             yield f"also: clause {later.clause + 1} at step {later.step}{self._time_text(later.step)}: {at}"
         yield f"{judgement}: {failure_words(fspa, failed, steps, self._time_text(failed.step))}"
 
+    def open_lines(self) -> Iterator[str]:
+        """Yield the lines about the clauses that the trace has not met; call it only if the trace does not fail."""
+        yield from self._failing.open_details()
+
     def values(self) -> dict[str, Any] | None:
         """Return the failure as JSON values; None if the trace does not fail.
 

@@ -32,6 +32,7 @@ from tltlc.logic.text.phrases import (
     is_state,
     object_phrase,
     phrase,
+    says_when,
 )
 from tltlc.logic.text.sequences import next_goal
 
@@ -135,6 +136,9 @@ def without_constants(formula: Formula) -> Formula:
 def _clause(node: Formula, when: str, context: _SentenceContext) -> _RankedClause:
     """Return a clause that tells the player to make ``node`` hold ``when``, a moment such as ``now``."""
     if is_state(node):
+        if says_when(node):
+            # Behind "the gems when checkpoint last began", "at that step" would be the step of the checkpoint.
+            return imperative(node, f"have {when}", f"avoid {when}"), _rank_of_state(node)
         text = imperative(node, "have", "avoid")
         return text if has_time(node) else f"{text} {when}", _rank_of_state(node)
     if context.depth == 0:

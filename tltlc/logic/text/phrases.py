@@ -91,6 +91,12 @@ def has_time(state: Formula) -> bool:
     return isinstance((state.args[0] if state.op == "not" else state).name, SpokenName)
 
 
+def says_when(state: Formula) -> bool:
+    """Whether a comparison in the formula has a value of another step: "the gems when checkpoint last began"."""
+    names = (part.name for part in state.walk() if part.op == "atom")
+    return any(isinstance(name, ComparisonName) and " when " in name for name in names)
+
+
 def has_verb(state: Formula, verb: str) -> bool:
     """Whether the formula is an atom that asks for something with this verb."""
     return isinstance(state.name, SpokenName) and state.name.verb == verb

@@ -1,26 +1,21 @@
-"""Keep the step at which a trace fails, and say what it has to do with the spec."""
+"""Keep the step at which a trace fails, or else its last, and say what it has to do with the spec."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import Any
 
-from tltlc.automaton.memory import schedule
-from tltlc.automaton.memory_phrases import Speaker
-from tltlc.automaton.value_phrases import VALUES, value_words
 from tltlc.core.record import record
-from tltlc.expression.tree import AtomValue, SignalValue, nodes
-from tltlc.monitor.failure_words import atom_words, shortened, unmet_words
+from tltlc.monitor.failure_words import shortened, unmet_words
 from tltlc.monitor.monitor import Monitor
 from tltlc.monitor.run import RunStep
 from tltlc.monitor.traces import TraceSample
-from tltlc.program.flags import Flags
 from tltlc.tools.judge.asked_since import asked_since
 from tltlc.tools.judge.clauses import Clauses
 from tltlc.tools.judge.kept_samples import KeptSamples
-from tltlc.tools.judge.measures import measure, short_number
+from tltlc.tools.judge.measured_step import MeasuredStep
+from tltlc.tools.judge.open_clauses import open_clauses
 from tltlc.tools.judge.step_times import StepTimes, seconds_text
-from tltlc.tools.judge.step_values import StepValue, enum_of, register_value, signal_value
 
 
 @record
@@ -32,7 +27,7 @@ class ClausePlace:
 
 
 class FailingStep:
-    """Notes the step at which a trace fails: what was measured there.
+    """Notes what was measured at the step at which a trace fails, or else at its last.
 
     ``places`` are the places of the clauses of the spec, none if they are not known; then ``clauses`` is not called.
     ``clauses`` returns automata for the single clauses.
@@ -43,9 +38,7 @@ class FailingStep:
         self._times = StepTimes(monitor.fspa)
         self._kept = KeptSamples(monitor.fspa.signals, clock_varies=monitor.fspa.clock_varies)
         self._sample: TraceSample = {}
-        self._number = 0
-        self._values: tuple[float, ...] = ()
-        self._known: dict[str, float] = {}
+        self._step = MeasuredStep()
 
     def watched(self, samples: Iterable[TraceSample]) -> Iterator[TraceSample]:
         """Yield the samples unchanged, and keep what the judgement needs of them."""
@@ -55,12 +48,10 @@ class FailingStep:
             yield sample
 
     def noted(self, rows: Iterable[RunStep]) -> Iterator[RunStep]:
-        """Yield the steps unchanged, and keep what was measured at the one that fails."""
+        """Yield the steps unchanged, and keep what was measured at the one that fails, or else at the last."""
         for row in rows:
-            if row.step.failed_step == row.number:
-                names = (register.name for register in self._monitor.fspa.registers)
-                self._number, self._values = row.number, row.values
-                self._known = {**self._sample, **dict(zip(names, self._monitor.registers, strict=True))}
+            if row.step.failed_step in (None, row.number):
+                self._step = self._measured(row)
             yield row
 
     def samples(self) -> list[TraceSample]:
@@ -81,13 +72,28 @@ class FailingStep:
             place = self._places[clause] if self._places else None
             named = f"clause {clause + 1}" if place is None else f"{place.file}:{place.line}"
             yield f"{named}: {fspa.clauses[clause]}"
-        values = dict.fromkeys(value for atom, _ in failed.cause.prime for value in self._values_of(atom))
+        values = self._words(atom for atom, _ in failed.cause.prime)
         if values:
-            yield f"at step {failed.step}: {', '.join(value.text for value in values)}"
+            yield f"at step {failed.step}: {values}"
         since = self._asked_since()
         if since is not None:
             yield f"the clause asked for this from step {since}{seconds_text(self.seconds(since))} on"
         yield f"what remained before: {shortened(unmet_words(fspa, failed))}"
+
+    def open_details(self) -> Iterator[str]:
+        """Yield two lines for each clause that the trace has not met: the clause, and what it looks at in the end.
+
+        The trace must not fail. There are no lines if the places of the clauses are not known.
+        """
+        if not self._places or not self._step.number:
+            return
+        fspa = self._monitor.fspa
+        for item in open_clauses(self._clauses(), fspa.clauses, self.samples()):
+            place = self._places[item.clause]
+            yield f"{place.file}:{place.line}: {fspa.clauses[item.clause]}"
+            values = self._words(index for index, atom in enumerate(fspa.atoms) if atom.name in item.atoms)
+            if values:
+                yield f"not met at step {self._step.number}, the last: {values}"
 
     def values(self) -> dict[str, Any] | None:
         """Return the failure as JSON values; None if the trace does not fail.
@@ -109,7 +115,7 @@ class FailingStep:
             "clause": None if clause is None else clause + 1,
             "file": None if place is None else place.file,
             "line": None if place is None else place.line,
-            "atoms": {fspa.atoms[atom].name: self._values[atom] for atom, _ in prime},
+            "atoms": {fspa.atoms[atom].name: self._step.values[atom] for atom, _ in prime},
             "unmet": unmet_words(fspa, failed),
             "asked_since": self._asked_since(),
         }
@@ -120,39 +126,12 @@ class FailingStep:
             return None
         return asked_since(self._clauses(), self._monitor.fspa.clauses, self.samples(), failed)
 
-    def _values_of(self, atom: int) -> tuple[StepValue, ...]:
-        """Return the value of an atom, or for a comparison the values that it compares."""
-        fspa, value = self._monitor.fspa, self._values[atom]
-        if fspa.atoms[atom].timer is not None:
-            return (StepValue(atom_words(fspa, atom)),)
-        measured = measure(fspa, atom, self._known)
-        if measured is not None and measured.number is not None:
-            return (StepValue(measured.quantity, measured.number),)
-        speaker, name = Speaker(fspa), fspa.atoms[atom].name
-        if speaker.is_about_past(name):
-            fact = speaker.fact(name, holds=value > 0.0, is_first=self._number == 1)
-            return (StepValue(atom_words(fspa, atom), _truth(value)) if fact is None else StepValue(fact),)
-        if AtomValue(name) in Flags(fspa, schedule(fspa)):
-            return (StepValue(atom_words(fspa, atom), _truth(value)),)
-        registers = {register.name: register for register in fspa.registers}
-        read = fspa.atoms[atom].expression
-        words = {
-            name: value_words(register, speaker.event_text(register))
-            if register.kind in VALUES
-            else speaker.quantity_text(name)
-            for name, register in registers.items()
-        }
-        values = {signal.name: signal_value(signal, self._known[signal.name]) for signal in fspa.signals}
-        values |= {
-            name: register_value(register, self._known[name], fspa.clock_s) for name, register in registers.items()
-        }
-        found = {node.name for node in nodes(read) if isinstance(node, SignalValue)}
-        names = sorted(found, key=lambda name: (name in registers, name))
-        reads = tuple(StepValue(words.get(name, name), values[name]) for name in names)
-        if measured is not None or enum_of(fspa, atom) is not None:
-            return reads
-        return (StepValue(atom_words(fspa, atom), short_number(value), reads),)
+    def _measured(self, row: RunStep) -> MeasuredStep:
+        names = (register.name for register in self._monitor.fspa.registers)
+        known = {**self._sample, **dict(zip(names, self._monitor.registers, strict=True))}
+        return MeasuredStep(row.number, row.values, known)
 
-
-def _truth(value: float) -> str:
-    return "true" if value > 0.0 else "false"
+    def _words(self, atoms: Iterable[int]) -> str:
+        """Return what these atoms look at, each value once: ``has_key is false, health is 20``."""
+        values = dict.fromkeys(value for atom in atoms for value in self._step.words(self._monitor.fspa, atom))
+        return ", ".join(value.text for value in values)

@@ -278,6 +278,7 @@ def _judgement(result: TraceOutcome, monitor: Monitor, failure: TraceFailure) ->
         yield from failure.lines("not accepted", result.steps)
         return
     if not result.accepted:
+        yield from failure.open_lines()
         yield f"what remains: {shortened(label_text(monitor.fspa, monitor.state))}"
     steps = f"{result.steps} step{'' if result.steps == 1 else 's'}"
     yield f"{'accepted' if result.accepted else 'not accepted'}: {result.verdict} after {steps}"
