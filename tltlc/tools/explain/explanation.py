@@ -21,6 +21,7 @@ from tltlc.logic.text.outline import Outline, outline
 from tltlc.logic.text.phrases import phrase
 from tltlc.resolve.registers import SATURATING, following_atoms
 from tltlc.resolve.sources import sources
+from tltlc.tools.explain.boundaries import boundaries
 from tltlc.tools.explain.ending import ending
 from tltlc.tools.explain.next_steps import edges_leading_on
 from tltlc.tools.witness.step_lengths import length_of
@@ -132,6 +133,8 @@ class Explanation:
     at a time. ``counting`` lists the runs of states that differ only in a count.
     ``judge`` is ``goal`` or ``limit``, and ``ending`` says what that means for this spec.
 
+    ``boundaries`` says what counts at the edges: at the same step, at the first step, where play ends.
+
     ``memory`` lists the values of the trace so far that the atoms read.
 
     ``succeed`` is a trace that succeeds, and ``fail`` one that fails. They are None if there is no
@@ -147,6 +150,7 @@ class Explanation:
     level: str | None
     outline: Outline | None
     exclusive: tuple[tuple[str, ...], ...]
+    boundaries: tuple[str, ...]
     memory: tuple[Remembered, ...]
     failures: tuple[TrapCondition, ...]
     judge: str
@@ -175,6 +179,7 @@ def explain(fspa: Fspa) -> Explanation:
         level=fspa.level,
         outline=_outline(fspa, formula) if isinstance(formula, Formula) else None,
         exclusive=tuple(tuple(fspa.atoms[index].name for index in group) for group in fspa.exclusive),
+        boundaries=boundaries(fspa),
         memory=_memory(fspa),
         failures=_failures(fspa, guards),
         judge=fspa.judge,

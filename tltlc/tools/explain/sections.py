@@ -61,6 +61,7 @@ def sections(explanation: Explanation) -> tuple[Section, ...]:
     return (
         Section(explanation.name, tuple(filter(None, (explanation.doc, _sentence(explanation))))),
         *_requirements(explanation),
+        *([Section("At the edges", (SectionList("", explanation.boundaries),))] if explanation.boundaries else ()),
         *_memory(explanation),
         Section("What breaks it", _failures(explanation)),
         Section("When it ends", (explanation.ending, limit_text(explanation.limit_steps, explanation.limit_s))),

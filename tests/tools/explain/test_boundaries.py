@@ -1,0 +1,104 @@
+"""What explanations say of the steps at the edges of goals, times and events."""
+
+from __future__ import annotations
+
+import pytest
+
+from tltlc.automaton.fspa import Fspa
+from tltlc.monitor import Monitor
+from tltlc.pipeline import compile_text
+from tltlc.tools.explain.boundaries import boundaries
+
+SIGNALS = "clock 2 Hz\nsignal a: bool\nsignal b: bool\nsignal x: int in [0, 9]\n"
+
+
+def _spec(clause: str) -> Fspa:
+    return compile_text(f"{SIGNALS}spec s {{\n    {clause}\n}}\n")[0]
+
+
+def _verdict(fspa: Fspa, *steps: str) -> str:
+    """Return the verdict after these steps: each has the names of the bools that hold."""
+    monitor = Monitor(fspa)
+    return [monitor.step({"a": "a" in names, "b": "b" in names, "x": 0}).verdict for names in steps][-1]
+
+
+def test_a_later_goal_may_have_begun_before() -> None:
+    fspa = _spec("reach a then b")
+    assert boundaries(fspa) == ("then b: any later step with it counts, also if it began before",)
+    assert _verdict(fspa, "b", "ab") == "pending" and _verdict(fspa, "b", "ab", "b") == "satisfied"
+
+
+def test_a_goal_that_begins_is_told_of_the_first_step_alone() -> None:
+    fspa = _spec("reach begins a")
+    assert boundaries(fspa) == ("a begins: also at the first step of play, if it holds there",)
+    assert _verdict(fspa, "a") == "satisfied"
+    assert not any(text.startswith("then") for text in boundaries(_spec("reach b then begins a")))
+
+
+def test_an_answer_may_come_at_the_last_step_and_counts_as_missed_where_play_ends() -> None:
+    fspa = _spec("keep a implies eventually within 1 s b")
+    assert boundaries(fspa) == (
+        "within 1 s: up to and including the step 1 s later",
+        "where play ends before that, what has not come counts as missed",
+    )
+    assert _verdict(fspa, "a", "", "b") == "holding" and _verdict(fspa, "a", "", "") == "violated"
+    assert _verdict(fspa, "a", "") == "pending"
+
+
+def test_a_time_ends_before_the_step_that_much_later() -> None:
+    fspa = _spec("keep a implies always for 2 s b")
+    assert boundaries(fspa) == (
+        "for 2 s: from that step on, but no longer at the step 2 s later",
+        "where play ends during such a time, nothing more is asked for",
+    )
+    assert _verdict(fspa, "ab", "b", "b", "b", "") == "holding" and _verdict(fspa, "ab", "b", "b", "") == "violated"
+    assert _verdict(fspa, "ab", "b") == "holding"
+
+
+@pytest.mark.parametrize(
+    ("clause", "text", "number"),
+    [
+        ("avoid time_holding(a) > 1 s", "a for more than 1 s: from the 4th step in a row with a on", 4),
+        ("avoid time_holding(a) >= 1 s", "a for at least 1 s: from the 3rd step in a row with a on", 3),
+        ("keep time_holding(a) <= 5 s", "a for more than 5 s: from the 12th step in a row with a on", 12),
+        ("keep time_holding(not a) < 0.5 s", "not a for at least 0.5 s: from the 2nd step in a row with not a on", 2),
+    ],
+)
+def test_a_time_in_a_row_is_told_in_steps(clause: str, text: str, number: int) -> None:
+    fspa = _spec(clause)
+    assert boundaries(fspa) == (text,)
+    held = "" if "not a" in clause else "a"
+    assert _verdict(fspa, *[held] * (number - 1)) == "holding" and _verdict(fspa, *[held] * number) == "violated"
+
+
+def test_what_lasts_from_an_answer_on_may_have_ended_before() -> None:
+    fspa = _spec("keep a implies eventually within 2 s always b")
+    assert "what must hold from then on may also hold and end again before that step" in boundaries(fspa)
+    assert _verdict(fspa, "ab", "", "b") == "holding"
+
+
+def test_a_value_at_an_event_is_new_at_its_step() -> None:
+    fspa = _spec("keep ends a implies x == value_at(x, begins b)")
+    assert "the x when b last began: at the start of b itself, the one of that step" in boundaries(fspa)
+
+
+def test_bounds_in_one_goal_after_another_are_those_of_the_text() -> None:
+    fspa = _spec("reach a then within 2 s b")
+    assert "within 2 s: up to and including the step 2 s later" in boundaries(fspa)
+    assert _verdict(fspa, "a", "", "", "", "b") == "satisfied"
+
+
+def test_a_timer_is_told_as_the_bound_that_it_takes_the_place_of() -> None:
+    texts = [
+        boundaries(
+            compile_text(f"clock {rate} Hz\nsignal a: bool\nsignal b: bool\nspec s {{ keep a implies {answer} }}")[0]
+        )
+        for rate in (2, 60)
+        for answer in ("eventually within 3 s b", "always for 4 s b")
+    ]
+    assert texts[:2] == texts[2:]
+
+
+def test_over_infinite_traces_there_are_none() -> None:
+    (fspa,) = compile_text(f"{SIGNALS}spec s {{\n    semantics infinite\n    keep a implies eventually b\n}}\n")
+    assert boundaries(fspa) == ()
