@@ -330,6 +330,14 @@ class Conditions(Quantities):
         self._since[since.text] = (state, start)
         return since
 
+    def held_since(self, state: State, *rest: str | Duration | State) -> State | None:
+        """Return the condition of `a for 2 s since b`: at some step since the last b, a has held for 2 s in a row."""
+        sign, duration, start = rest if len(rest) > len(("duration", "start")) else (">=", *rest)
+        assert isinstance(duration, Duration) and isinstance(start, State)
+        if sign not in (">", ">=") or duration.is_steps:
+            return None
+        return State(f"(not {start.at(ATOM)} since time_holding({state.text}) {sign} {duration.text})")
+
     def at_steps_of(self, event: State, condition: State) -> State | None:
         """Return a condition at the steps of an event: `since the last event` is since the one before.
 

@@ -147,8 +147,8 @@ def _excused(clause: str, excuse: State) -> _Changed | None:
     if tree is None or value is None or isinstance(value, tuple) or _is_chain(value):
         return None
     if isinstance(value, BinaryExpr) and value.op == "implies" and tree.kind == "keep":
-        left, right = _state(value.left, clause), _state(value.right, clause)
-        if _is_about_past(value.right):
+        left, right = state_of(value.left, clause), state_of(value.right, clause)
+        if is_about_past(value.right):
             is_end = isinstance(value.left, Unary) and value.left.op == "ends" and "once within" in left.text
             where = (
                 f"if `{excuse.text}` counts at the end of that time"
@@ -164,9 +164,9 @@ def _excused(clause: str, excuse: State) -> _Changed | None:
         if excuse.text in clause:
             return None
         return _second(clause, value, excuse.negated(), f"if `{excuse.text}` counts at the later of the two")
-    if not _is_about_past(value):
+    if not is_about_past(value):
         return None
-    state = _state(value, clause)
+    state = state_of(value, clause)
     if tree.kind == "avoid":
         return _Changed(f"avoid {joined([state, excuse.negated()], 'and').text}")
     return _Changed(f"keep {joined([state, excuse], 'or').text}") if tree.kind == "keep" else None
@@ -180,16 +180,16 @@ def _limited(clause: str, during: State, *, end_is_stretch: bool) -> _Changed | 
         return None
     if tree.kind == "avoid" and isinstance(value, BinaryExpr) and value.op == "then":
         return _both(clause, value, during)
-    if not _is_about_past(value):
+    if not is_about_past(value):
         return None
     if during.level > ATOM or _is_alternative(value):
         return None  # the end may be about a part alone
     if isinstance(value, BinaryExpr) and value.op == "implies" and tree.kind == "keep":
         if not end_is_stretch:
             return None
-        condition = joined([_state(value.left, clause), during], "and")
-        return _Changed(f"keep {condition.text} implies {_state(value.right, clause).text}")
-    state = _state(value, clause)
+        condition = joined([state_of(value.left, clause), during], "and")
+        return _Changed(f"keep {condition.text} implies {state_of(value.right, clause).text}")
+    state = state_of(value, clause)
     if tree.kind == "avoid":
         return _Changed(f"avoid {joined([state, during], 'and').text}")
     return _Changed(f"keep {during.at(OR)} implies {state.at(OR)}") if tree.kind == "keep" else None
@@ -203,12 +203,12 @@ def _is_chain(value: Expr) -> bool:
 
 
 def _second(clause: str, value: BinaryExpr, free: State, where: str) -> _Changed:
-    last = joined([_state(value.right, clause), free], "and")
-    return _Changed(f"avoid {_state(value.left, clause).at(ATOM)} {_operator(value, clause)} ({last.text})", where)
+    last = joined([state_of(value.right, clause), free], "and")
+    return _Changed(f"avoid {state_of(value.left, clause).at(ATOM)} {_operator(value, clause)} ({last.text})", where)
 
 
 def _both(clause: str, value: BinaryExpr, during: State) -> _Changed:
-    first, last = (joined([_state(side, clause), during], "and") for side in (value.left, value.right))
+    first, last = (joined([state_of(side, clause), during], "and") for side in (value.left, value.right))
     where = f"if both count only while `{during.text}`"
     return _Changed(f"avoid ({first.text}) {_operator(value, clause)} ({last.text})", where)
 
@@ -223,11 +223,12 @@ def _at_step(excuse: State, state: State) -> str:
     return f"if `{excuse.text}` counts at the step of `{state.text}`"
 
 
-def _state(expr: Expr, clause: str) -> State:
+def state_of(expr: Expr, clause: str) -> State:
+    """Return the text of an expression of a clause, as a part of other clauses."""
     level = _LOOSE.get(expr.op, ATOM) if isinstance(expr, BinaryExpr) else ATOM
     return State(clause[expr.span.start : expr.span.end], level)
 
 
-def _is_about_past(expr: Expr) -> bool:
+def is_about_past(expr: Expr) -> bool:
     """Whether an expression has no operator that looks ahead."""
     return not any(isinstance(part, (Unary, BinaryExpr)) and part.op in _AHEAD for part in parts(expr))

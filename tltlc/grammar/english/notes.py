@@ -262,6 +262,12 @@ def _is_held(expression: Expr) -> bool:
     return isinstance(expression, CallExpr) and expression.name == "time_holding"
 
 
+def _is_wait(held: Expr) -> bool:
+    """Whether a time counts how long an answer has been missing, as that of `time_holding(not b since a)` does."""
+    argument = held.arguments[0].value if isinstance(held, CallExpr) and held.arguments else None
+    return isinstance(argument, BinaryExpr) and argument.op == "since"
+
+
 def _is_ever(held: Expr) -> bool:
     """Whether a time counts from the first step with a condition on, as that of `time_holding(once a)` does."""
     inner = held.arguments[0].value if isinstance(held, CallExpr) and held.arguments else None
@@ -272,7 +278,7 @@ def _of_time(comparison: BinaryExpr, source: SourceFile, step_s: float) -> str:
     """Return how many steps in a row take a time, which is 0 s at the first of them, and the time of one step less."""
     limit = comparison.right
     steps = _steps(limit, step_s) if isinstance(limit, NumberExpr) else 0.0
-    if not steps or _is_ever(comparison.left):
+    if not steps or _is_ever(comparison.left) or _is_wait(comparison.left):
         return ""
     number = (ceil(steps) if comparison.op == ">=" else floor(steps) + 1) + 1
     if number > _MOST_STEPS:

@@ -12,6 +12,7 @@ from tltlc.grammar.english.arguments import with_read_arguments
 from tltlc.grammar.english.bounds import Bounds
 from tltlc.grammar.english.contradictions import behind_its_count, behind_its_event, forbids_its_event, has_empty_option
 from tltlc.grammar.english.counts_since import CountsSince
+from tltlc.grammar.english.cut_off import strong_clause, uncut, without_cut_off
 from tltlc.grammar.english.ends import end_of, with_end, with_last_seconds
 from tltlc.grammar.english.events import Crossing, as_state
 from tltlc.grammar.english.exceptions import Exceptions
@@ -115,6 +116,9 @@ def _whole_sentence(words: Words) -> Sentence:
     Several lines may be one sentence, or one for each line. Without lark, which the playground does not
     load, no sentence is read.
     """
+    weak = _without_cut_off(words)
+    if weak is not None:
+        return weak
     typed, words = words, with_read_arguments(words, _said_condition)
     if words is not typed and is_valid((words.text,)):
         return Sentence((Reading((words.text,)),))
@@ -138,6 +142,19 @@ def _whole_sentence(words: Words) -> Sentence:
     if any(len(line.readings) != 1 for line in sentences):
         return whole
     return Sentence((Reading(tuple(clause for line in sentences for clause in line.readings[0].clauses)),))
+
+
+def _without_cut_off(words: Words) -> Sentence | None:
+    """Return the reading of a sentence that ends in `unless the recording ends`; None for other sentences."""
+    before, clause = uncut(words), strong_clause(words)
+    if before is None and not clause:
+        return None
+    if before is not None:
+        readings = sentence(before).readings
+        is_one = len(readings) == 1 and not readings[0].condition and len(readings[0].clauses) == 1
+        clause = before.text if is_valid((before.text,)) else readings[0].clauses[0] if is_one else ""
+    weak = without_cut_off(clause) if clause else ""
+    return Sentence((Reading((weak,)),) if weak and is_valid((weak,)) else ())
 
 
 def _with_end(words: Words) -> Sentence:
