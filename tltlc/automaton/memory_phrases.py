@@ -78,6 +78,13 @@ _COUNTING: Final = frozenset({"samples", "elapsed", "time_since", "age"})
 """The kinds of the registers that these timers read."""
 
 
+def _single(formula: Formula) -> Formula:
+    """Return a formula without a double negation before it."""
+    while formula.op == "not" and formula.args[0].op == "not":
+        (formula,) = formula.args[0].args
+    return formula
+
+
 def spoken(formula: Formula, fspa: Fspa) -> Formula:
     """Return the formula for people, with phrases in place of the names of atoms.
 
@@ -177,17 +184,18 @@ class Speaker:
         is_denied = node.op == "or" and not all(map(is_state, node.args))
         if node.op != "and" and not is_denied:
             return None
-        parts = list(node.args)
+        original = {_single(part): part for part in node.args}
+        parts = list(original)
         edges: list[Formula] = []
         for operand, verb, members in self._edges:
             said = tuple(map(opposite, members)) if is_denied else members
             if all(part in parts for part in said):
                 parts = [part for part in parts if part not in said]
-                begins = atom(f"{self.object_text(operand)} {verb}s")
+                begins = atom(f"{self._subject_text(operand)} {verb}s")
                 edges.append(not_(begins) if is_denied else begins)
         if not edges:
             return None
-        rest = [done[part] for part in parts]
+        rest = [done[original[part]] for part in parts]
         return edges[0] if len(edges) + len(rest) == 1 else rebuild(node, (*edges, *rest))
 
     def turns(self, literals: Sequence[Formula]) -> tuple[list[str], list[Formula]]:
@@ -196,7 +204,7 @@ class Speaker:
         for operand, verb, members in self._edges:
             if all(part in rest for part in members):
                 rest = [part for part in rest if part not in members]
-                texts.append(f"{self.object_text(operand)} {verb}s")
+                texts.append(f"{self._subject_text(operand)} {verb}s")
         return texts, rest
 
     def _answers(self, node: Formula, done: Mapping[Formula, Formula]) -> Formula | None:
@@ -373,20 +381,27 @@ class Speaker:
             )
             verb = "be" if register.kind == "time_since" else ""
             return Phrase(*(SpokenName(text, verb, is_past=True) for text in (holds, fails)))
+        window = self.window(item)
+        if window is None:
+            return None
+        time, is_recent = window
+        if is_recent:
+            return Phrase(SpokenName(f"{self.object_text(operand)} in the last {time}", is_past=True))
+        fails = SpokenName(f"a step with {self.object_text(opposite(opposite(operand)))} in the last {time}", "have")
+        return Phrase(SpokenName(f"{self.object_text(opposite(operand))} for the last {time}", is_past=True), fails)
+
+    def window(self, item: Atom) -> tuple[str, bool] | None:
+        """Return the time of ``once within T p`` and True, or that of ``historically for T p`` and False; else None."""
+        registers = self._read(item)
         # A predicate, whose name has no spaces, may compute what looks like a window.
-        window = window_of(item.expression) if " " in item.base else None
-        if register.kind != "time_since" or window is None:
+        window = window_of(item.expression) if " " in item.base and len(registers) == 1 else None
+        if window is None or registers[0].kind != "time_since":
             return None
         # `once within n steps` has its border at n + 1/2 steps, `historically for n steps` at n - 1/2.
         border, is_recent = window
         steps = border - 0.5 if is_recent else border + 0.5
         time = f"{steps:g} steps" if self._clock_s is None else f"{round(steps * self._clock_s, 6):g} s"
-        if register.unit == "s":
-            time = f"{border:g} s"
-        if is_recent:
-            return Phrase(SpokenName(f"{self.object_text(operand)} in the last {time}", is_past=True))
-        fails = SpokenName(f"a step with {self.object_text(opposite(opposite(operand)))} in the last {time}", "have")
-        return Phrase(SpokenName(f"{self.object_text(opposite(operand))} for the last {time}", is_past=True), fails)
+        return f"{border:g} s" if registers[0].unit == "s" else time, is_recent
 
     def _timer_phrase(self, item: Atom, register: Register, texts: tuple[str, str]) -> Phrase:
         arguments = self.arguments(item, register)
@@ -454,9 +469,17 @@ class Speaker:
         """Return a formula without temporal operators as a phrase, in brackets unless it is short."""
         if state is TRUE:
             return "any step"
+        denied = self._turn(negation_normal_form(not_(state))) if state.op in ("or", "implies") else None
+        if denied is not None:
+            return f"({denied[0]} does not {denied[1]})"
         in_words = self.spoken(state)
         is_long = isinstance(in_words.name, SpokenName) and " " in in_words.name
         return f"({phrase(in_words)})" if is_long else bracketed_phrase(in_words)
+
+    def _subject_text(self, state: Formula) -> str:
+        """Return a formula as what begins or ends: "(not seen) begins" is not "not (seen begins)"."""
+        text = self.object_text(state)
+        return f"({text})" if state.op == "not" and not text.startswith("(") else text
 
     def noun_text(self, state: Formula) -> str:
         """Return a formula as the object of a sentence: "the start of damage" where it begins to hold."""
@@ -484,7 +507,7 @@ class Speaker:
         """Return what begins or ends in a state, and "begin" or "end"; None for other states."""
         for operand, verb, members in self._edges if state.op == "and" else ():
             if set(state.args) == set(members):
-                return self.object_text(operand), verb
+                return self._subject_text(operand), verb
         return None
 
     @cached_property

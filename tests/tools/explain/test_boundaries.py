@@ -102,3 +102,45 @@ def test_a_timer_is_told_as_the_bound_that_it_takes_the_place_of() -> None:
 def test_over_infinite_traces_there_are_none() -> None:
     (fspa,) = compile_text(f"{SIGNALS}spec s {{\n    semantics infinite\n    keep a implies eventually b\n}}\n")
     assert boundaries(fspa) == ()
+
+
+def test_the_step_that_ends_an_until_is_free() -> None:
+    fspa = _spec("require a weak_until b")
+    assert boundaries(fspa) == ("until b: at that step itself, a is not asked for",)
+    assert _verdict(fspa, "a", "b") == "satisfied"
+
+
+@pytest.mark.parametrize("clause", ["keep times_within(a, 2 s) <= 1", "keep ends b implies once within 2 s begins a"])
+def test_the_step_at_the_edge_of_the_last_seconds_counts(clause: str) -> None:
+    assert "in the last 2 s: at this step, or at one up to and including the step 2 s before" in boundaries(
+        _spec(clause)
+    )
+
+
+def test_the_edge_of_the_last_seconds_is_where_it_is_told() -> None:
+    fspa = _spec("keep times_within(a, 2 s) <= 1")
+    assert _verdict(fspa, "a", "", "", "", "a") == "violated"
+    assert _verdict(fspa, "a", "", "", "", "", "a") == "holding"
+
+
+def test_the_step_of_an_event_counts_since_it() -> None:
+    fspa = _spec("keep times_since(a, b) <= 0")
+    assert boundaries(fspa) == ("since b: that step counts, too",)
+    assert _verdict(fspa, "", "ab") == "violated"
+
+
+def test_a_time_in_all_does_not_count_the_first_step() -> None:
+    fspa = _spec("keep total_time(a) <= 0.5 s")
+    assert boundaries(fspa) == (
+        "times in all: the first step of play counts for nothing, since no time has passed there",
+    )
+    assert _verdict(fspa, "a", "a") == "holding" and _verdict(fspa, "", "a", "a") == "violated"
+
+
+def test_a_sum_of_fractions_may_miss_an_exact_limit_by_rounding() -> None:
+    text = "sums of numbers with fractions are rounded: an exact limit may be missed by the last digit"
+    head = "signal vent in [0, 100]\nsignal n: int in [0, 9]\nspec s {{ keep {0} >= previous({0}) - 5 }}"
+    (fractions,), (whole,) = (compile_text(head.format(name)) for name in ("vent", "n"))
+    assert text in boundaries(fractions) and text not in boundaries(whole)
+    monitor = Monitor(fractions)
+    assert [monitor.step({"vent": vent}).verdict for vent in (10.3, 5.3)] == ["holding", "violated"]

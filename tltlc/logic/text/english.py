@@ -336,7 +336,8 @@ def _bounded_clause(operator: Bounded, context: _SentenceContext, begins_next: b
             return f"reach {goal} within {time}", _PLAIN
         return f"reach within {time} a {_step_noun(body, context)}", _CLAUSE
     if is_state(body):
-        return f"{imperative(body, 'keep', 'avoid')} for {time}", _rank_of_state(body)
+        kept = f"keep {bracketed_phrase(body)}" if body.op in ("or", "implies", "iff") else None
+        return f"{kept or imperative(body, 'keep', 'avoid')} for {time}", _rank_of_state(body)
     return f"at each of {context.counts.steps(steps + 1)} from here on, {_last_clause(body, context)}", _CLAUSE
 
 

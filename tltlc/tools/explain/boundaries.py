@@ -9,8 +9,9 @@ from tltlc.automaton.memory_phrases import Speaker
 from tltlc.automaton.remembered_formulas import counted, counted_since, names_read
 from tltlc.automaton.text import times_of
 from tltlc.automaton.value_phrases import value_words
-from tltlc.core.names import ComparisonName
+from tltlc.core.names import ComparisonName, split_name
 from tltlc.expression.evaluate import evaluate
+from tltlc.expression.tree import SignalValue, nodes
 from tltlc.logic import formula as f
 from tltlc.logic.bounded_operators import LEAST, Bounded, bounded_operator
 from tltlc.logic.formula import Formula
@@ -27,7 +28,8 @@ def boundaries(fspa: Fspa) -> tuple[str, ...]:
     """
     if fspa.semantics == "infinite" or not isinstance(fspa.formula, Formula):
         return ()
-    return tuple(dict.fromkeys([*_goals(fspa), *_events(fspa), *_times(fspa), *_memory(fspa)]))
+    edges = (*_goals(fspa), *_events(fspa), *_ends(fspa), *_times(fspa), *_memory(fspa), *_sums(fspa))
+    return tuple(dict.fromkeys(edges))
 
 
 def _goals(fspa: Fspa) -> Iterator[str]:
@@ -59,6 +61,17 @@ def _events(fspa: Fspa) -> Iterator[str]:
     begun = [text for text in texts if text.endswith(" begins")]
     if begun:
         yield f"{', '.join(begun)}: also at the first step of play, if it holds there"
+
+
+def _ends(fspa: Fspa) -> Iterator[str]:
+    """Yield what is to know of `until`: what it keeps may have ended at the step that ends it."""
+    assert isinstance(fspa.formula, Formula)
+    speaker = Speaker(fspa)
+    for node in fspa.formula.walk():
+        if node.op in ("U", "W") and all(map(is_state, node.args)):
+            kept, end = (bracketed_phrase(speaker.spoken(part)) for part in node.args)
+            if speaker.timers.isdisjoint(node.atoms()):
+                yield f"until {end}: at that step itself, {kept} is not asked for"
 
 
 def _times(fspa: Fspa) -> Iterator[str]:
@@ -114,13 +127,32 @@ def _memory(fspa: Fspa) -> Iterator[str]:
                 number, holds = steps
                 words = atom_words(fspa, index, holds=holds)
                 yield f"{words}: from the {_ordinal(number)} step in a row with {speaker.object_text(held)} on"
+    windows = [split_name(register.name)[1][-1] for register in fspa.registers if register.kind == "times_within"]
+    recent = [window[0] for item in fspa.atoms if (window := speaker.window(item)) is not None and window[1]]
+    for time in dict.fromkeys((*windows, *recent)):
+        yield f"in the last {time}: at this step, or at one up to and including the step {time} before"
     for register in fspa.registers:
         event = counted_since(register)
+        if register.kind in ("times_since", "total_time_since") and event is not None:
+            yield f"since {speaker.noun_text(event)}: that step counts, too"
         if register.kind == "value_at" and event is not None:
             words = value_words(register, speaker.event_text(register))
             yield f"{words}: at {speaker.noun_text(event)} itself, the one of that step"
         elif register.kind in ("total_time", "total_time_since"):
             yield "times in all: the first step of play counts for nothing, since no time has passed there"
+
+
+def _sums(fspa: Fspa) -> Iterator[str]:
+    """Yield what is to know of sums of numbers with fractions: their last digits are rounded."""
+    fractions = {signal.name for signal in fspa.signals if signal.type not in ("int", "bool")}
+    registers = {register.name: register for register in fspa.registers}
+    for item in fspa.atoms:
+        name, read = item.base, names_read(item)
+        if isinstance(name, ComparisonName) and any(sign in f"{name.left} {name.right}" for sign in (" + ", " - ")):
+            for register in filter(None, map(registers.get, tuple(read))):
+                read.update(node.name for node in nodes(register.update) if isinstance(node, SignalValue))
+            if read & fractions:
+                yield "sums of numbers with fractions are rounded: an exact limit may be missed by the last digit"
 
 
 def _first_step(fspa: Fspa, item: Atom, register: Register) -> tuple[int, bool] | None:

@@ -64,11 +64,18 @@ def sections(explanation: Explanation) -> tuple[Section, ...]:
         *([Section("At the edges", (SectionList("", explanation.boundaries),))] if explanation.boundaries else ()),
         *_memory(explanation),
         Section("What breaks it", _failures(explanation)),
-        Section("When it ends", (explanation.ending, limit_text(explanation.limit_steps, explanation.limit_s))),
+        Section("When it ends", (explanation.ending, *_limit(explanation))),
         Section("States", _states(explanation)),
         Section(f"{article} to succeed", _trace_blocks(explanation.succeed, _no_success(explanation))),
         Section(f"{article} to fail", _trace_blocks(explanation.fail, _no_failure(explanation))),
     )
+
+
+def _limit(explanation: Explanation) -> tuple[str, ...]:
+    text = limit_text(explanation.limit_steps, explanation.limit_s)
+    if explanation.limit_steps is None:
+        return (text,)
+    return text, "`tltlc monitor` judges a longer recording whole; with `--episodes`, up to the limit."
 
 
 def _sentence(explanation: Explanation) -> str:

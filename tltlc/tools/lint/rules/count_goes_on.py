@@ -41,8 +41,10 @@ def _findings(limit: ScopedExpression, call: CallExpr) -> Iterator[RuleFinding]:
     if start.op == "ends":
         where, title = negated_text(state), f"this also counts where `{state.text}` holds"
         goes_on = f"this goes on when `{state.text}` begins again, and counts before its first end"
+    once = operand_text(limit.with_tree(start))
     help_ = (
         f"if it counts until `{start_text}` comes again, allow this with the comment `// tltlc: allow TLT0470`; "
+        f"if it does not count before the first, write `keep once {once} implies {limit.text}`; "
         f"if only steps {'with' if start.op == 'begins' else 'without'} `{state.text}` count, write "
         f"`keep {where} implies {limit.text}`"
     )

@@ -34,7 +34,10 @@ def check(view: FileView) -> Iterator[RuleFinding]:
             for part in formula.parts():
                 label = _beyond(part, limit)
                 if label is not None:
-                    help_ = "leave the time out, make it shorter, or allow more with `limit`"
+                    help_ = (
+                        "leave the time out, make it shorter, or allow more with `limit`; if whole recordings are "
+                        "judged by it, which may be longer, allow this with the comment `// tltlc: allow TLT0444`"
+                    )
                     yield RuleFinding("the limit ends play before this time is over", (label, end), help_)
 
 
