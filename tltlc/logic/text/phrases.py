@@ -93,8 +93,7 @@ def has_time(state: Formula) -> bool:
 
 def says_when(state: Formula) -> bool:
     """Whether a comparison in the formula has a value of another step: "the gems when checkpoint last began"."""
-    names = (part.name for part in state.walk() if part.op == "atom")
-    return any(isinstance(name, ComparisonName) and " when " in name for name in names)
+    return any(" when " in part.name for part in state.walk() if part.op == "atom")
 
 
 def has_verb(state: Formula, verb: str) -> bool:
