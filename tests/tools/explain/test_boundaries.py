@@ -30,7 +30,9 @@ def test_a_later_goal_may_have_begun_before() -> None:
 
 def test_a_goal_that_begins_is_told_of_the_first_step_alone() -> None:
     fspa = _spec("reach begins a")
-    assert boundaries(fspa) == ("a begins: also at the first step of play, if it holds there",)
+    assert boundaries(fspa) == (
+        "a begins: at the first of its steps in a row; also at the first step of play, if it holds there",
+    )
     assert _verdict(fspa, "a") == "satisfied"
     assert not any(text.startswith("then") for text in boundaries(_spec("reach b then begins a")))
 
@@ -43,6 +45,16 @@ def test_an_answer_may_come_at_the_last_step_and_counts_as_missed_where_play_end
     )
     assert _verdict(fspa, "a", "", "b") == "holding" and _verdict(fspa, "a", "", "") == "violated"
     assert _verdict(fspa, "a", "") == "pending"
+
+
+def test_a_time_after_which_something_is_forbidden_includes_its_last_step() -> None:
+    fspa = _spec("avoid a then within 1 s a")
+    assert boundaries(fspa)[-2:] == (
+        "for the next 1 s: up to and including the step 1 s later",
+        "where play ends during such a time, nothing more is asked for",
+    )
+    assert _verdict(fspa, "a", "", "a") == "violated" and _verdict(fspa, "a", "", "", "a") == "holding"
+    assert _verdict(fspa, "a") == "holding"
 
 
 def test_a_time_ends_before_the_step_that_much_later() -> None:
@@ -125,7 +137,7 @@ def test_the_edge_of_the_last_seconds_is_where_it_is_told() -> None:
 
 def test_the_step_of_an_event_counts_since_it() -> None:
     fspa = _spec("keep times_since(a, b) <= 0")
-    assert boundaries(fspa) == ("since b: that step counts, too",)
+    assert boundaries(fspa) == ("a since b: at that very step, it counts, too",)
     assert _verdict(fspa, "", "ab") == "violated"
 
 

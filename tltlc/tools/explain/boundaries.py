@@ -13,7 +13,7 @@ from tltlc.core.names import ComparisonName, split_name
 from tltlc.expression.evaluate import evaluate
 from tltlc.expression.tree import SignalValue, nodes
 from tltlc.logic import formula as f
-from tltlc.logic.bounded_operators import LEAST, Bounded, bounded_operator
+from tltlc.logic.bounded_operators import Bounded, bounded_operator
 from tltlc.logic.formula import Formula
 from tltlc.logic.text.phrases import bracketed_phrase, is_state
 from tltlc.logic.text.sequences import next_goal
@@ -60,15 +60,16 @@ def _events(fspa: Fspa) -> Iterator[str]:
         texts.update(dict.fromkeys(speaker.turns(literals)[0]))
     begun = [text for text in texts if text.endswith(" begins")]
     if begun:
-        yield f"{', '.join(begun)}: also at the first step of play, if it holds there"
+        names = ", ".join(begun)
+        yield f"{names}: at the first of its steps in a row; also at the first step of play, if it holds there"
 
 
 def _ends(fspa: Fspa) -> Iterator[str]:
     """Yield what is to know of `until`: what it keeps may have ended at the step that ends it."""
     assert isinstance(fspa.formula, Formula)
     speaker = Speaker(fspa)
-    for node in fspa.formula.walk():
-        if node.op in ("U", "W") and all(map(is_state, node.args)):
+    for node, is_positive in _signed(fspa.formula):
+        if node.op in ("U", "W") and is_positive and all(map(is_state, node.args)):
             kept, end = (bracketed_phrase(speaker.spoken(part)) for part in node.args)
             if speaker.timers.isdisjoint(node.atoms()):
                 yield f"until {end}: at that step itself, {kept} is not asked for"
@@ -77,10 +78,10 @@ def _ends(fspa: Fspa) -> Iterator[str]:
 def _times(fspa: Fspa) -> Iterator[str]:
     """Yield what is to know of `within` and `for`: which steps count, and what the end of play does."""
     assert isinstance(fspa.formula, Formula)
-    counts, waits, lasting = times_of(fspa), dict[str, None](), dict[str, None]()
-    for operator in _bounded_operators(fspa.formula):
-        time = counts.time(operator.steps + (operator.op == "G"))
-        (waits if operator.op == "F" else lasting)[time] = None
+    counts, waits, lasting, later = times_of(fspa), dict[str, None](), dict[str, None](), dict[str, None]()
+    for operator, is_next in _bounded_operators(fspa.formula):
+        time = counts.time(operator.steps + (is_next or operator.op == "G"))
+        (waits if operator.op == "F" else later if is_next else lasting)[time] = None
         if operator.op == "F" and any(part.op == "G" for part in operator.body.walk()):
             yield "what must hold from then on may also hold and end again before that step"
     for item in fspa.atoms:
@@ -94,25 +95,42 @@ def _times(fspa: Fspa) -> Iterator[str]:
         yield "where play ends before that, what has not come counts as missed"
     for time in lasting:
         yield f"for {time}: from that step on, but no longer at the step {time} later"
-    if lasting:
+    for time in later:
+        yield f"for the next {time}: up to and including the step {time} later"
+    if lasting or later:
         yield "where play ends during such a time, nothing more is asked for"
 
 
-def _bounded_operators(formula: Formula) -> Iterator[Bounded]:
-    """Yield the bounded operators of a formula; one of n steps behind a `next` has n + 1."""
-    pending, seen = [formula], set[Formula]()
-    while pending:
-        node = pending.pop()
-        if node in seen:
-            continue
-        seen.add(node)
+def _bounded_operators(formula: Formula) -> Iterator[tuple[Bounded, bool]]:
+    """Yield the bounded operators of a formula, each with whether it begins at the next step.
+
+    Inside a negation, F is yielded for G, and G for F.
+    """
+    for node, is_positive in _signed(formula):
         is_next = node.op in ("X", "N")
         operator = bounded_operator(node.args[0] if is_next else node)
-        if operator is None or operator.steps < LEAST:
-            pending += node.args
+        if operator is not None:
+            yield operator if is_positive else operator._replace(op="G" if operator.op == "F" else "F"), is_next
+
+
+def _signed(formula: Formula) -> Iterator[tuple[Formula, bool]]:
+    """Yield the parts of a formula, each with whether it stands inside an even number of negations.
+
+    Of a bounded operator, or a `next` before one, the parts are those of its operand.
+    """
+    pending, seen = [(formula, True)], set[tuple[Formula, bool]]()
+    while pending:
+        node, is_positive = item = pending.pop()
+        if item in seen:
+            continue
+        seen.add(item)
+        yield item
+        operator = bounded_operator(node.args[0] if node.op in ("X", "N") else node)
+        if operator is not None:
+            pending.append((operator.body, is_positive))
         else:
-            yield operator._replace(steps=operator.steps + is_next)
-            pending.append(operator.body)
+            denied = {"not": (0,), "implies": (0,)}.get(node.op, ())
+            pending += [(part, is_positive != (index in denied)) for index, part in enumerate(node.args)]
 
 
 def _memory(fspa: Fspa) -> Iterator[str]:
@@ -134,7 +152,9 @@ def _memory(fspa: Fspa) -> Iterator[str]:
     for register in fspa.registers:
         event = counted_since(register)
         if register.kind in ("times_since", "total_time_since") and event is not None:
-            yield f"since {speaker.noun_text(event)}: that step counts, too"
+            operand = counted(register, registers)
+            words = "what" if operand is None else speaker.object_text(operand)
+            yield f"{words} since {speaker.noun_text(event)}: at that very step, it counts, too"
         if register.kind == "value_at" and event is not None:
             words = value_words(register, speaker.event_text(register))
             yield f"{words}: at {speaker.noun_text(event)} itself, the one of that step"

@@ -69,7 +69,8 @@ def _avoided_finding(value: ScopedExpression, same: list[ScopedExpression], *, i
     return RuleFinding(
         f"`{event.text}` is avoided twice in a row",
         (label,),
-        f"if it may last, but must not begin again, write {again}",
+        f"if it may last, but must not begin again, write {again}; if each of its steps counts, allow this with the "
+        "comment `// tltlc: allow TLT0445`",
     )
 
 
