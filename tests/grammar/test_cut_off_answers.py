@@ -8,6 +8,7 @@ import pytest
 
 from tests.grammar.sentences import read
 from tltlc.automaton.fspa import Fspa
+from tltlc.diagnostics.diagnostic import TltlError
 from tltlc.monitor import Monitor
 from tltlc.pipeline import compile_text
 
@@ -55,30 +56,53 @@ def test_the_clause_differs_from_the_answer_only_where_play_ends(event: str) -> 
         assert _verdicts(weak, trace) == expected
 
 
+SINCE = "(not begins fire since (time_holding(spray) >= 2 s and time_since(begins fire) >= 2 s))"
+
+
 @pytest.mark.parametrize(
     "typed",
     [
         "keep ends fire implies spray for 2 s since begins fire",
         "keep ends fire implies spray for at least 2 s since begins fire",
         "keep ends fire implies once spray for 2 s since the last begins fire",
-        "keep ends fire implies spray at least 2 s since begins fire",
+        "keep ends fire implies spray held for 2 s since begins fire",
     ],
 )
 def test_a_time_since_an_event_asks_for_a_time_in_a_row(typed: str) -> None:
-    clause = "keep ends fire implies (not begins fire since time_holding(spray) >= 2 s)"
-    assert [(*reading.clauses, reading.condition) for reading in read(typed).readings] == [(clause, "")]
+    assert [(*reading.clauses, reading.condition) for reading in read(typed).readings] == [
+        (f"keep ends fire implies {SINCE}", "")
+    ]
 
 
-def test_the_time_must_come_to_its_end_since_the_event() -> None:
-    fspa = _automaton("keep ends fire implies (not begins fire since time_holding(spray) >= 2 s)")
+def test_a_time_since_an_event_that_comes_later_is_no_time_in_a_row() -> None:
+    assert not any(
+        "time_holding" in "".join(reading.clauses)
+        for reading in read("keep ends fire implies spray at least 2 s since fire").readings
+    )
+
+
+def test_the_time_begins_and_ends_since_the_event() -> None:
+    fspa = _automaton(f"keep ends fire implies {SINCE}")
     for trace in product(product((0, 1), repeat=2), repeat=6):
-        violated, started, long_enough, row = False, False, False, 0
+        violated, long_enough, row = False, False, 0
         for step, (fire, spray) in enumerate(trace):
             before = trace[step - 1][0] if step else 0
-            row = row + 1 if spray else 0
             if fire and not before:
-                started, long_enough = True, False
+                row, long_enough = 0, False
+            row = row + 1 if spray else 0
             long_enough = long_enough or row >= 3
             violated = violated or bool(before and not fire and not long_enough)
-        assert started or not violated
         assert (_verdicts(fspa, trace)[-1] == "violated") == violated
+
+
+@pytest.mark.parametrize("time", ["5 steps", "0 s"])
+def test_a_time_that_no_timer_can_compare_has_no_reading(time: str) -> None:
+    assert not read(f"keep fire implies eventually within {time} spray unless the recording ends").readings
+
+
+def test_where_the_clock_varies_there_is_no_reading() -> None:
+    head = "clock varies\nsignal fire: bool\nsignal spray: bool\nspec s {\n    "
+    clause = "keep fire implies eventually within 2 s spray unless the recording ends"
+    with pytest.raises(TltlError) as caught:
+        compile_text(f"{head}{clause}\n}}\n")
+    assert "time_holding" not in (caught.value.diagnostics[0].help or "")

@@ -394,7 +394,8 @@ class Speaker:
         """Return the time of ``once within T p`` and True, or that of ``historically for T p`` and False; else None."""
         registers = self._read(item)
         # A predicate, whose name has no spaces, may compute what looks like a window.
-        window = window_of(item.expression) if " " in item.base and len(registers) == 1 else None
+        is_named = " " in item.base and not isinstance(item.base, ComparisonName)
+        window = window_of(item.expression) if is_named and len(registers) == 1 else None
         if window is None or registers[0].kind != "time_since":
             return None
         # `once within n steps` has its border at n + 1/2 steps, `historically for n steps` at n - 1/2.

@@ -251,6 +251,21 @@ def test_each_clause_that_is_not_met_is_told_with_what_it_looks_at(tltlc) -> Non
     assert lines[2:4] == ["boss.tltl:7: reach boss_door then sword", "not met at step 3, the last: sword is false"]
 
 
+def test_a_timer_is_told_only_where_it_holds(tltlc) -> None:  # type: ignore[no-untyped-def]
+    Path("boss.tltl").write_text(
+        "clock 60 Hz\nsignal sword: bool\nsignal boss_door: bool\n"
+        "spec boss { keep sword implies eventually within 3 s boss_door }\n"
+    )
+    lines = tltlc("monitor", "boss.tltl", trace("0,1,50", "0,0,50")).err.splitlines()
+    assert lines[1] == "not met at step 2, the last: boss_door is due after sword"
+
+
+def test_a_goal_that_needs_a_later_step_says_so(tltlc) -> None:  # type: ignore[no-untyped-def]
+    Path("boss.tltl").write_text(SPEC.partition("spec")[0] + "spec boss { reach sword then boss_door }\n")
+    lines = tltlc("monitor", "boss.tltl", trace("0,0,50", "1,1,50")).err.splitlines()
+    assert lines[1] == "not met at step 2, the last: needs a later step; boss_door is true"
+
+
 def test_a_test_that_expects_another_verdict_says_why_the_trace_fails(tltlc) -> None:  # type: ignore[no-untyped-def]
     test = '\ntest "a way in" for boss {\n    step boss_door\n    expect holding\n}\n'
     Path("boss.tltl").write_text(SPEC + test)

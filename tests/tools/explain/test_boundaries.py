@@ -70,10 +70,10 @@ def test_a_time_ends_before_the_step_that_much_later() -> None:
 @pytest.mark.parametrize(
     ("clause", "text", "number"),
     [
-        ("avoid time_holding(a) > 1 s", "a for more than 1 s: from the 4th step in a row with a on", 4),
-        ("avoid time_holding(a) >= 1 s", "a for at least 1 s: from the 3rd step in a row with a on", 3),
-        ("keep time_holding(a) <= 5 s", "a for more than 5 s: from the 12th step in a row with a on", 12),
-        ("keep time_holding(not a) < 0.5 s", "not a for at least 0.5 s: from the 2nd step in a row with not a on", 2),
+        ("avoid time_holding(a) > 1 s", "a for more than 1 s: from the 4th step in a row with a", 4),
+        ("avoid time_holding(a) >= 1 s", "a for at least 1 s: from the 3rd step in a row with a", 3),
+        ("keep time_holding(a) <= 5 s", "a for more than 5 s: from the 12th step in a row with a", 12),
+        ("keep time_holding(not a) < 0.5 s", "not a for at least 0.5 s: from the 2nd step in a row with not a", 2),
     ],
 )
 def test_a_time_in_a_row_is_told_in_steps(clause: str, text: str, number: int) -> None:
@@ -144,15 +144,58 @@ def test_the_step_of_an_event_counts_since_it() -> None:
 def test_a_time_in_all_does_not_count_the_first_step() -> None:
     fspa = _spec("keep total_time(a) <= 0.5 s")
     assert boundaries(fspa) == (
-        "times in all: the first step of play counts for nothing, since no time has passed there",
+        "how long a has held in all: the first step of play adds nothing, since no time has passed",
     )
     assert _verdict(fspa, "a", "a") == "holding" and _verdict(fspa, "", "a", "a") == "violated"
 
 
 def test_a_sum_of_fractions_may_miss_an_exact_limit_by_rounding() -> None:
-    text = "sums of numbers with fractions are rounded: an exact limit may be missed by the last digit"
+    text = "results with fractions are rounded: an exact limit may be missed by the last digit"
     head = "signal vent in [0, 100]\nsignal n: int in [0, 9]\nspec s {{ keep {0} >= previous({0}) - 5 }}"
     (fractions,), (whole,) = (compile_text(head.format(name)) for name in ("vent", "n"))
     assert text in boundaries(fractions) and text not in boundaries(whole)
     monitor = Monitor(fractions)
     assert [monitor.step({"vent": vent}).verdict for vent in (10.3, 5.3)] == ["holding", "violated"]
+
+
+@pytest.mark.parametrize(
+    "clause",
+    [
+        "keep b implies time_since(a) < 2 s",
+        "require a until (a and b)",
+        "reach a then not a",
+        "reach a then within 2 s b",
+        "keep begins a implies time_holding(begins b) >= 2 s",
+    ],
+)
+def test_nothing_is_told_that_is_not_so(clause: str) -> None:
+    wrong = ("in the last", "until", "then ", "time_holding", "(b begins) for")
+    assert not any(text.startswith(wrong) for text in boundaries(_spec(clause)))
+
+
+@pytest.mark.parametrize("clause", ["avoid always for 2 s a", "keep b implies not always for 2 s a"])
+def test_what_is_denied_is_told_as_its_opposite(clause: str) -> None:
+    fspa = _spec(clause)
+    assert boundaries(fspa) == (
+        "within 1.5 s: up to and including the step 1.5 s later",
+        "where play ends before that, what has not come counts as missed",
+    )
+    assert _verdict(fspa, "ab", "a") == "pending"
+
+
+def test_a_window_that_is_no_multiple_of_a_step_is_told_in_steps() -> None:
+    fspa = _spec("keep times_within(a, 2.3 s) <= 1")
+    assert boundaries(fspa) == ("in the last 2.5 s: at this step, or at one up to and including the step 2.5 s before",)
+    assert _verdict(fspa, "a", "", "", "", "", "a") == "violated"
+
+
+@pytest.mark.parametrize("rate", [2, 60])
+def test_the_beginning_that_a_timer_remembers_is_told(rate: int) -> None:
+    head = f"clock {rate} Hz\nsignal a: bool\nsignal b: bool\nspec s {{ keep begins a implies "
+    (fspa,) = compile_text(f"{head}eventually within 2 s b }}")
+    assert boundaries(fspa)[0].startswith("a begins: at the first of its steps in a row")
+
+
+def test_goals_that_exclude_each_other_have_not_begun_before() -> None:
+    (fspa,) = compile_text(f"{SIGNALS}exclusive a, b\nspec s {{ reach a then b }}")
+    assert boundaries(fspa) == ()

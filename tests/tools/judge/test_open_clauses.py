@@ -47,3 +47,12 @@ def test_the_atoms_are_those_that_decide_the_next_step() -> None:
     atoms = {CLAUSES[item.clause]: item.atoms for item in opened}
     assert atoms["reach a then b"] == {"b"}
     assert atoms["reach times(a) >= 2 and b"] == {"times(a) < 2", "b"}
+
+
+def test_a_clause_that_one_more_step_would_meet_needs_a_step() -> None:
+    session = _session(TEXT)
+    clauses = clauses_of(session.automata[0], session.specs[0])
+    opened = {
+        item.clause: item for item in open_clauses(clauses, CLAUSES, [{"a": 0.0, "b": 0.0}, {"a": 1.0, "b": 1.0}])
+    }
+    assert opened[0].needs_step and not opened[2].needs_step

@@ -332,11 +332,15 @@ class Conditions(Quantities):
 
     def held_since(self, state: State, *rest: str | Duration | State) -> State | None:
         """Return the condition of `a for 2 s since b`: at some step since the last b, a has held for 2 s in a row."""
-        sign, duration, start = rest if len(rest) > len(("duration", "start")) else (">=", *rest)
+        *signs, duration, start = rest
         assert isinstance(duration, Duration) and isinstance(start, State)
+        sign = signs[0] if signs else ">="
         if sign not in (">", ">=") or duration.is_steps:
             return None
-        return State(f"(not {start.at(ATOM)} since time_holding({state.text}) {sign} {duration.text})")
+        times = (
+            f"{time} {sign} {duration.text}" for time in (f"time_holding({state.text})", f"time_since({start.text})")
+        )
+        return State(f"(not {start.at(ATOM)} since ({' and '.join(times)}))")
 
     def at_steps_of(self, event: State, condition: State) -> State | None:
         """Return a condition at the steps of an event: `since the last event` is since the one before.

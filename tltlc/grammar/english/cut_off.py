@@ -25,6 +25,7 @@ _ENDS: Final = phrases(
         )
     ),
 )
+_SECONDS: Final = ("ms", "s", "min", "h")
 _WEAK: Final = "weak_eventually"
 
 
@@ -63,7 +64,7 @@ def without_cut_off(clause: str) -> str:
     if not isinstance(answer, Unary) or answer.op != "F" or answer.bound is None or not is_about_past(answer.operand):
         return ""
     before = clause[answer.op_span.end : answer.operand.span.start].split()
-    if before[:1] != ["within"]:
+    if before[:1] != ["within"] or before[-1] not in _SECONDS or before[1].strip("0.") == "":
         return ""
     missing = state_of(answer.operand, clause).negated()
     start = joined([state_of(value.left, clause), missing], "and")

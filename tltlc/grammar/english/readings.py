@@ -153,7 +153,8 @@ def _without_cut_off(words: Words) -> Sentence | None:
         readings = sentence(before).readings
         is_one = len(readings) == 1 and not readings[0].condition and len(readings[0].clauses) == 1
         clause = before.text if is_valid((before.text,)) else readings[0].clauses[0] if is_one else ""
-    weak = without_cut_off(clause) if clause else ""
+    # Where the clock varies, a step may come so late that nothing was missing for the time.
+    weak = without_cut_off(clause) if clause and not words.names.clock_varies else ""
     return Sentence((Reading((weak,)),) if weak and is_valid((weak,)) else ())
 
 

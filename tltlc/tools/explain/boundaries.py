@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import Final
 
 from tltlc.automaton.fspa import Fspa
 from tltlc.automaton.memory_phrases import Speaker
-from tltlc.automaton.remembered_formulas import counted, counted_since, names_read
+from tltlc.automaton.remembered_formulas import broken_rule, counted, counted_since, names_read, waited_for
 from tltlc.automaton.text import times_of
 from tltlc.automaton.value_phrases import value_words
 from tltlc.core.names import ComparisonName, split_name
 from tltlc.expression.evaluate import evaluate
-from tltlc.expression.tree import SignalValue, nodes
+from tltlc.expression.tree import Condition, Const, SignalValue, nodes
 from tltlc.logic import formula as f
 from tltlc.logic.bounded_operators import Bounded, bounded_operator
 from tltlc.logic.formula import Formula
@@ -19,6 +20,13 @@ from tltlc.logic.text.phrases import bracketed_phrase, is_state
 from tltlc.logic.text.sequences import next_goal
 from tltlc.monitor.failure_words import atom_words
 from tltlc.resolve.spec import Atom, Register
+
+_WAITS: Final = ("late", "passed", "recent")
+"""The timers, whose first argument is a time, that say how long something may take."""
+_LASTING: Final = ("breach", "lasted", "lately")
+"""Those that say how long something must last."""
+_FROM_NEXT: Final = "the next "
+"""What stands before a time that begins at the next step."""
 
 
 def boundaries(fspa: Fspa) -> tuple[str, ...]:
@@ -28,77 +36,172 @@ def boundaries(fspa: Fspa) -> tuple[str, ...]:
     """
     if fspa.semantics == "infinite" or not isinstance(fspa.formula, Formula):
         return ()
-    edges = (*_goals(fspa), *_events(fspa), *_ends(fspa), *_times(fspa), *_memory(fspa), *_sums(fspa))
-    return tuple(dict.fromkeys(edges))
+    return tuple(dict.fromkeys(_Boundaries(fspa, fspa.formula).all()))
 
 
-def _goals(fspa: Fspa) -> Iterator[str]:
-    """Yield what is to know of goals behind `then`: they may have begun before."""
-    assert isinstance(fspa.formula, Formula)
-    speaker, goals = Speaker(fspa), dict[str, None]()
-    for node in fspa.formula.walk():
-        following = next_goal(node)
-        if following is not None and following.link == "then":
-            body = following.body
-            states = (part for part in (body.args if body.op == "and" else (body,)) if is_state(part))
-            goal = f.and_(*states)
-            if goal is not f.TRUE and not any(speaker.is_about_past(name) for name in goal.atoms()):
-                goals[bracketed_phrase(speaker.spoken(goal))] = None
-    if goals:
-        first, *others = goals
-        yield f"then {first}{', and so on' if others else ''}: any later step with it counts, also if it began before"
+class _Boundaries:
+    """Finds what counts at the edges of one spec."""
+
+    def __init__(self, fspa: Fspa, formula: Formula) -> None:
+        self._fspa, self._formula, self._speaker = fspa, formula, Speaker(fspa)
+        self._registers = {register.name: register for register in fspa.registers}
+
+    def all(self) -> Iterator[str]:
+        yield from self._goals()
+        yield from self._events()
+        yield from self._ends()
+        yield from self._times()
+        for index, item in enumerate(self._fspa.atoms):
+            yield from self._time_in_a_row(index, item)
+        yield from self._windows()
+        for register in self._fspa.registers:
+            yield from self._since(register)
+        if any(map(self._is_sum_of_fractions, self._fspa.atoms)):
+            yield "results with fractions are rounded: an exact limit may be missed by the last digit"
+
+    def _goals(self) -> Iterator[str]:
+        """Yield what is to know of goals behind `then`: they may have begun before."""
+        goals: dict[str, None] = {}
+        for node in self._formula.walk():
+            following = next_goal(node)
+            if following is None or following.link != "then" or following.steps is not None:
+                continue
+            goal, before = _state_of(following.body), _state_of(node)
+            if goal is not f.TRUE and self._may_last(before, goal):
+                goals[bracketed_phrase(self._speaker.spoken(goal))] = None
+        if goals:
+            first, *others = goals
+            rest = ", and so on" if others else ""
+            yield f"then {first}{rest}: any later step with it counts, also if it began before"
+
+    def _may_last(self, before: Formula, goal: Formula) -> bool:
+        """Whether a goal may hold at the step of the goal before it, and be no event, which holds at single steps."""
+        names, earlier = set(goal.atoms()), set(before.atoms())
+        if names & earlier or any(map(self._speaker.is_about_past, names)):
+            return False
+        atoms = self._fspa.atoms
+        groups = ({atoms[index].name for index in group} for group in self._fspa.exclusive)
+        return not any(group & names and group & earlier for group in groups)
+
+    def _events(self) -> Iterator[str]:
+        """Yield what is to know of beginnings: which steps they are, and that the first step may be one."""
+        texts: dict[str, None] = {}
+        for literals in self._conjunctions():
+            texts.update(dict.fromkeys(self._speaker.turns(literals)[0]))
+        begun = [text for text in texts if text.endswith(" begins")]
+        if begun:
+            names = ", ".join(begun)
+            yield f"{names}: at the first of its steps in a row; also at the first step of play, if it holds there"
+
+    def _conjunctions(self) -> Iterator[tuple[Formula, ...]]:
+        """Yield the parts of the conjunctions in guards, in the formula, and in what timers remember."""
+        atoms = [f.atom(item.name) for item in self._fspa.atoms]
+        guards = [edge.guard.primes for edge in self._fspa.edges]
+        broken = [clause.primes for edge in self._fspa.edges for clause in edge.broken]
+        for prime in dict.fromkeys(prime for primes in (*guards, *broken) for prime in primes):
+            yield tuple(atoms[index] if holds else f.not_(atoms[index]) for index, holds in prime)
+        formulas = [self._formula]
+        for register in self._fspa.registers:
+            answer, rule = waited_for(register), broken_rule(register, self._registers)
+            formulas += answer[:2] if answer is not None else ()
+            formulas += rule if rule is not None else ()
+        for formula in formulas:
+            for node in formula.walk():
+                if node.op == "and":
+                    yield node.args
+
+    def _ends(self) -> Iterator[str]:
+        """Yield what is to know of `until`: what it keeps may have ended at the step that ends it."""
+        for node, is_positive in _signed(self._formula):
+            if node.op not in ("U", "W") or not is_positive or not all(map(is_state, node.args)):
+                continue
+            kept, end = node.args
+            if set(kept.atoms()) & set(end.atoms()) or not self._speaker.timers.isdisjoint(node.atoms()):
+                continue
+            denied = kept.op == "not"
+            words = bracketed_phrase(self._speaker.spoken(kept.args[0] if denied else kept))
+            free = f"{words} is allowed" if denied else f"{words} is not asked for"
+            yield f"until {bracketed_phrase(self._speaker.spoken(end))}: at that step itself, {free}"
+
+    def _times(self) -> Iterator[str]:
+        """Yield what is to know of `within` and `for`: which steps count, and what the end of play does."""
+        counts = times_of(self._fspa)
+        waits, lasting, later = dict[str, None](), dict[str, None](), dict[str, None]()
+        for operator, is_next in _bounded_operators(self._formula):
+            time = counts.time(operator.steps + (is_next or operator.op == "G"))
+            (waits if operator.op == "F" else later if is_next else lasting)[time] = None
+            if operator.op == "F" and any(part.op == "G" for part in operator.body.walk()):
+                yield "what must hold from then on may also hold and end again before that step"
+        for item in self._fspa.atoms:
+            if item.timer is not None and item.base in (*_WAITS, *_LASTING) and len(item.arguments) > 1:
+                time = item.arguments[0].removeprefix(_FROM_NEXT)
+                is_next = time != item.arguments[0]
+                (waits if item.base in _WAITS else later if is_next else lasting)[time] = None
+        for time in waits:
+            yield f"within {time}: up to and including the step {time} later"
+        if waits:
+            yield "where play ends before that, what has not come counts as missed"
+        for time in lasting:
+            yield f"for {time}: from that step on, but no longer at the step {time} later"
+        for time in later:
+            yield f"for the next {time}: up to and including the step {time} later"
+        if lasting or later:
+            yield "where play ends during such a time, nothing more is asked for"
+
+    def _time_in_a_row(self, index: int, item: Atom) -> Iterator[str]:
+        """Yield from which step in a row on an atom that compares a `time_holding` holds."""
+        read = [self._registers[name] for name in names_read(item) if name in self._registers]
+        if len(read) != 1 or read[0].kind != "time_holding":
+            return
+        change, held = _change(self._fspa, item, read[0]), counted(read[0], self._registers)
+        if change is None or held is None or self._speaker.turns(held.args)[0]:
+            return
+        number, holds = change
+        words = atom_words(self._fspa, index, holds=holds)
+        yield f"{words}: from the {_ordinal(number)} step in a row with {self._speaker.object_text(held)}"
+
+    def _windows(self) -> Iterator[str]:
+        """Yield the step at the edge of the last seconds."""
+        windows = filter(None, map(self._speaker.window, self._fspa.atoms))
+        counts = [register for register in self._fspa.registers if register.kind == "times_within"]
+        for time in dict.fromkeys((*map(self._window_of, counts), *(time for time, is_recent in windows if is_recent))):
+            yield f"in the last {time}: at this step, or at one up to and including the step {time} before"
+
+    def _window_of(self, register: Register) -> str:
+        """Return the time in which a register of ``times_within(p, T)`` counts, in whole steps of the clock."""
+        limits = (node.args[1] for node in nodes(register.update) if isinstance(node, Condition) and node.op == "<=")
+        steps = next((limit.value for limit in limits if isinstance(limit, Const)), None)
+        if self._fspa.clock_varies or steps is None:
+            return split_name(register.name)[1][-1]
+        return times_of(self._fspa).time(int(steps))
+
+    def _since(self, register: Register) -> Iterator[str]:
+        """Yield what is to know of counts and values since an event, and of times in all."""
+        operand, event = counted(register, self._registers), counted_since(register)
+        words = "it" if operand is None else self._speaker.object_text(operand)
+        if register.kind == "value_at" and event is not None:
+            value = value_words(register, self._speaker.event_text(register))
+            yield f"{value}: at {self._speaker.noun_text(event)} itself, the one of that step"
+        if register.kind in ("times_since", "total_time_since") and event is not None:
+            yield f"{words} since {self._speaker.noun_text(event)}: at that very step, it counts, too"
+        if register.kind in ("total_time", "total_time_since"):
+            yield f"how long {words} has held in all: the first step of play adds nothing, since no time has passed"
+
+    def _is_sum_of_fractions(self, item: Atom) -> bool:
+        """Whether an atom compares what is computed from numbers with fractions, in which digits may be rounded."""
+        name, read = item.base, names_read(item)
+        if not isinstance(name, ComparisonName):
+            return False
+        if not any(sign in f"{name.left} {name.right}" for sign in (" + ", " - ", " * ", " / ")):
+            return False
+        for register in filter(None, map(self._registers.get, tuple(read))):
+            read.update(node.name for node in nodes(register.update) if isinstance(node, SignalValue))
+        return any(signal.name in read and signal.type not in ("int", "bool") for signal in self._fspa.signals)
 
 
-def _events(fspa: Fspa) -> Iterator[str]:
-    """Yield what is to know of beginnings: the first step may be one."""
-    speaker, texts = Speaker(fspa), dict[str, None]()
-    atoms = [f.atom(item.name) for item in fspa.atoms]
-    guards = [edge.guard.primes for edge in fspa.edges]
-    broken = [clause.primes for edge in fspa.edges for clause in edge.broken]
-    for prime in dict.fromkeys(prime for primes in (*guards, *broken) for prime in primes):
-        literals = [atoms[index] if holds else f.not_(atoms[index]) for index, holds in prime]
-        texts.update(dict.fromkeys(speaker.turns(literals)[0]))
-    begun = [text for text in texts if text.endswith(" begins")]
-    if begun:
-        names = ", ".join(begun)
-        yield f"{names}: at the first of its steps in a row; also at the first step of play, if it holds there"
-
-
-def _ends(fspa: Fspa) -> Iterator[str]:
-    """Yield what is to know of `until`: what it keeps may have ended at the step that ends it."""
-    assert isinstance(fspa.formula, Formula)
-    speaker = Speaker(fspa)
-    for node, is_positive in _signed(fspa.formula):
-        if node.op in ("U", "W") and is_positive and all(map(is_state, node.args)):
-            kept, end = (bracketed_phrase(speaker.spoken(part)) for part in node.args)
-            if speaker.timers.isdisjoint(node.atoms()):
-                yield f"until {end}: at that step itself, {kept} is not asked for"
-
-
-def _times(fspa: Fspa) -> Iterator[str]:
-    """Yield what is to know of `within` and `for`: which steps count, and what the end of play does."""
-    assert isinstance(fspa.formula, Formula)
-    counts, waits, lasting, later = times_of(fspa), dict[str, None](), dict[str, None](), dict[str, None]()
-    for operator, is_next in _bounded_operators(fspa.formula):
-        time = counts.time(operator.steps + (is_next or operator.op == "G"))
-        (waits if operator.op == "F" else later if is_next else lasting)[time] = None
-        if operator.op == "F" and any(part.op == "G" for part in operator.body.walk()):
-            yield "what must hold from then on may also hold and end again before that step"
-    for item in fspa.atoms:
-        is_timer = item.timer is not None and item.base in ("late", "breach") and len(item.arguments) > 1
-        # The first argument is the time: "5 s", or "the next 5 s" if it begins at the next step.
-        if is_timer and item.arguments[0][0].isdigit():
-            (waits if item.base == "late" else lasting)[item.arguments[0]] = None
-    for time in waits:
-        yield f"within {time}: up to and including the step {time} later"
-    if waits:
-        yield "where play ends before that, what has not come counts as missed"
-    for time in lasting:
-        yield f"for {time}: from that step on, but no longer at the step {time} later"
-    for time in later:
-        yield f"for the next {time}: up to and including the step {time} later"
-    if lasting or later:
-        yield "where play ends during such a time, nothing more is asked for"
+def _state_of(body: Formula) -> Formula:
+    """Return the conditions of a goal on its own step, without what follows."""
+    return f.and_(*(part for part in (body.args if body.op == "and" else (body,)) if is_state(part)))
 
 
 def _bounded_operators(formula: Formula) -> Iterator[tuple[Bounded, bool]]:
@@ -128,54 +231,12 @@ def _signed(formula: Formula) -> Iterator[tuple[Formula, bool]]:
         operator = bounded_operator(node.args[0] if node.op in ("X", "N") else node)
         if operator is not None:
             pending.append((operator.body, is_positive))
-        else:
-            denied = {"not": (0,), "implies": (0,)}.get(node.op, ())
-            pending += [(part, is_positive != (index in denied)) for index, part in enumerate(node.args)]
+            continue
+        denied = node.args[:1] if node.op in ("not", "implies") else ()
+        pending += ((part, is_positive != (index < len(denied))) for index, part in enumerate(node.args))
 
 
-def _memory(fspa: Fspa) -> Iterator[str]:
-    """Yield what is to know of times and values of the trace so far."""
-    speaker, registers = Speaker(fspa), {register.name: register for register in fspa.registers}
-    for index, item in enumerate(fspa.atoms):
-        read = [registers[name] for name in names_read(item) if name in registers]
-        if len(read) == 1 and read[0].kind == "time_holding":
-            steps = _first_step(fspa, item, read[0])
-            held = counted(read[0], registers)
-            if steps is not None and held is not None:
-                number, holds = steps
-                words = atom_words(fspa, index, holds=holds)
-                yield f"{words}: from the {_ordinal(number)} step in a row with {speaker.object_text(held)} on"
-    windows = [split_name(register.name)[1][-1] for register in fspa.registers if register.kind == "times_within"]
-    recent = [window[0] for item in fspa.atoms if (window := speaker.window(item)) is not None and window[1]]
-    for time in dict.fromkeys((*windows, *recent)):
-        yield f"in the last {time}: at this step, or at one up to and including the step {time} before"
-    for register in fspa.registers:
-        event = counted_since(register)
-        if register.kind in ("times_since", "total_time_since") and event is not None:
-            operand = counted(register, registers)
-            words = "what" if operand is None else speaker.object_text(operand)
-            yield f"{words} since {speaker.noun_text(event)}: at that very step, it counts, too"
-        if register.kind == "value_at" and event is not None:
-            words = value_words(register, speaker.event_text(register))
-            yield f"{words}: at {speaker.noun_text(event)} itself, the one of that step"
-        elif register.kind in ("total_time", "total_time_since"):
-            yield "times in all: the first step of play counts for nothing, since no time has passed there"
-
-
-def _sums(fspa: Fspa) -> Iterator[str]:
-    """Yield what is to know of sums of numbers with fractions: their last digits are rounded."""
-    fractions = {signal.name for signal in fspa.signals if signal.type not in ("int", "bool")}
-    registers = {register.name: register for register in fspa.registers}
-    for item in fspa.atoms:
-        name, read = item.base, names_read(item)
-        if isinstance(name, ComparisonName) and any(sign in f"{name.left} {name.right}" for sign in (" + ", " - ")):
-            for register in filter(None, map(registers.get, tuple(read))):
-                read.update(node.name for node in nodes(register.update) if isinstance(node, SignalValue))
-            if read & fractions:
-                yield "sums of numbers with fractions are rounded: an exact limit may be missed by the last digit"
-
-
-def _first_step(fspa: Fspa, item: Atom, register: Register) -> tuple[int, bool] | None:
+def _change(fspa: Fspa, item: Atom, register: Register) -> tuple[int, bool] | None:
     """Return at which step in a row, from 1, an atom that compares a time changes, and its truth from then on.
 
     None if the number of steps is not known, or if the atom never changes.

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Container, Iterable, Iterator, Sequence
 from typing import Any
 
 from tltlc.core.record import record
@@ -91,9 +91,10 @@ class FailingStep:
         for item in open_clauses(self._clauses(), fspa.clauses, self.samples()):
             place = self._places[item.clause]
             yield f"{place.file}:{place.line}: {fspa.clauses[item.clause]}"
-            values = self._words(index for index, atom in enumerate(fspa.atoms) if atom.name in item.atoms)
-            if values:
-                yield f"not met at step {self._step.number}, the last: {values}"
+            values = self._words(index for index in range(len(fspa.atoms)) if self._is_told(index, item.atoms))
+            after = "needs a later step" if item.needs_step else ""
+            if told := "; ".join(filter(None, (after, values))):
+                yield f"not met at step {self._step.number}, the last: {told}"
 
     def values(self) -> dict[str, Any] | None:
         """Return the failure as JSON values; None if the trace does not fail.
@@ -130,6 +131,11 @@ class FailingStep:
         names = (register.name for register in self._monitor.fspa.registers)
         known = {**self._sample, **dict(zip(names, self._monitor.registers, strict=True))}
         return MeasuredStep(row.number, row.values, known)
+
+    def _is_told(self, atom: int, names: Container[str]) -> bool:
+        """Whether an atom is among these, and says something at the last step: a timer does where it holds."""
+        item = self._monitor.fspa.atoms[atom]
+        return item.name in names and (item.timer is None or self._step.values[atom] > 0.0)
 
     def _words(self, atoms: Iterable[int]) -> str:
         """Return what these atoms look at, each value once: ``has_key is false, health is 20``."""

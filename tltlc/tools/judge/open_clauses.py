@@ -15,11 +15,13 @@ from tltlc.tools.judge.trace_run import TraceRunner
 class OpenClause:
     """A clause that a trace has neither met nor broken: its index in the spec.
 
-    ``atoms`` has the names of the atoms that decide what happens to the clause at the next step.
+    ``atoms`` has the names of the atoms that decide what happens to the clause at the next step. ``needs_step`` says
+    whether one more step like the last would meet the clause.
     """
 
     clause: int
     atoms: frozenset[str]
+    needs_step: bool
 
 
 def open_clauses(clauses: Clauses, texts: Sequence[str], samples: Sequence[TraceSample]) -> tuple[OpenClause, ...]:
@@ -31,9 +33,11 @@ def open_clauses(clauses: Clauses, texts: Sequence[str], samples: Sequence[Trace
     found = {}
     for part in clauses.parts:
         if part.text in texts and (index := texts.index(part.text)) not in found:
-            ended = TraceRunner(part.fspa).run(samples)[0]
+            runner = TraceRunner(part.fspa)
+            ended = runner.run(samples)[0]
             if ended.outcome.verdict == "pending":
-                found[index] = OpenClause(index, _atoms_after(part.fspa, ended.state))
+                needs_step = runner.run([*samples, samples[-1]])[0].outcome.accepted
+                found[index] = OpenClause(index, _atoms_after(part.fspa, ended.state), needs_step)
     return tuple(found[index] for index in sorted(found))
 
 

@@ -56,6 +56,7 @@ def test_the_offered_value_is_that_of_an_earlier_step() -> None:
         "keep a implies n == value_at(n, begins b)",
         "keep ends a implies n == value_at(n, begins a)",
         "keep ends a implies m == value_at(n, begins b)",
+        "keep ends a implies previous(n) == value_at(n, begins b)",
         "keep ends a implies n == value_at(n, begins b and not a)",
         "keep ends a implies eventually n == value_at(n, begins b)",
     ],

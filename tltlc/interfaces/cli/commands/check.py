@@ -96,6 +96,7 @@ def command(
     from tltlc.interfaces.cli.lint_findings import diagnostics_of
     from tltlc.interfaces.cli.report import Report, count_text, tally
     from tltlc.io.spec_file import split
+    from tltlc.tools.lint.joining import joined
 
     context = click.get_current_context()
     places = {"--level": levels, "--game": games}
@@ -110,7 +111,7 @@ def command(
                 report.add(error.diagnostics)
                 continue
             diagnostics = diagnostics_of(spec_input, split(spec)[1])
-            report.add(diagnostics)
+            report.add(joined(diagnostics) if format == "text" else diagnostics)
             if levels or games:
                 inputs.append(spec_input)
             if spec in specs and not diagnostics:

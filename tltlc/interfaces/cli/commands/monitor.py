@@ -83,13 +83,14 @@ def command(
 ) -> int:
     """Judge recorded traces by a spec. A TRACE is CSV with a header of signal names, JSON lines, Parquet, or a tape.
 
-    For one file, the output has one row per step (state, verdict, progress, reward, value of each atom) and the verdict
-    of the whole trace; beside CSV, the verdict goes to standard error. If the trace fails, the verdict says at which
-    step, which clause it breaks there, which atoms decide it, and which clauses it breaks later. For several files or a
-    folder, the output has one line per trace, and a summary that says which clauses the failed traces break or leave
-    undone. In a folder, files that end in .csv, .jsonl, .tape.jsonl.gz or .parquet are traces; a tape beside a trace
-    with the same name is the same play, and is left out. A spec over infinite traces accepts a trace that ends in a
-    goal state. The exit status is 0 if all traces are accepted, and 1 otherwise.
+    For one file, the output has one row per step (state, verdict, progress, reward, value of each atom) and the
+    verdict of the whole trace; beside CSV, the verdict goes to standard error. If the trace ends too early, the
+    output names the clauses that are not met, and what they look at. If it fails, the verdict says at which step,
+    which clause it breaks there, which atoms decide it, and which clauses it breaks later. For several files or a
+    folder, the output has one line per trace, and a summary that says which clauses the failed traces break or
+    leave undone. In a folder, files that end in .csv, .jsonl, .tape.jsonl.gz or .parquet are traces; a tape beside
+    a trace with the same name is the same play, and is left out. A spec over infinite traces accepts a trace that
+    ends in a goal state. The exit status is 0 if all traces are accepted, and 1 otherwise.
     """
     from tltlc.io.files import is_dir
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from tltlc.diagnostics.diagnostic import Label
 from tltlc.grammar.tree import BinaryExpr, CallExpr
-from tltlc.grammar.walk import parts
+from tltlc.grammar.walk import children, parts
 from tltlc.tools.lint.asked_results import asked_results
 from tltlc.tools.lint.edges import edge_of
 from tltlc.tools.lint.file_view import FileView, ScopedExpression, operand_text, without_brackets
@@ -47,11 +47,14 @@ def _is_compared_value(comparison: ScopedExpression, call: CallExpr) -> bool:
     if call.name != "value_at" or call.name in comparison.env.scope.names or len(call.arguments) != 2:
         return False
     remembered = comparison.with_tree(call.arguments[0].value).text
-    return any(
-        comparison.with_tree(part).text == remembered
-        for part in parts(comparison.tree)
-        if not call.span.covers(part.span)
-    )
+    pending = [comparison.tree]
+    while pending:
+        part = pending.pop()
+        if comparison.with_tree(part).text == remembered:
+            return True
+        # What a function makes of the value is another value.
+        pending += () if isinstance(part, CallExpr) else children(part)
+    return False
 
 
 def _finding(call: ScopedExpression, event: ScopedExpression, edge: ScopedExpression) -> RuleFinding:
