@@ -25,6 +25,7 @@ from tltlc.grammar.mistakes.declaration_forms.reading import (
     tokens_as_meant,
 )
 from tltlc.grammar.mistakes.fragments import block_kind, declarations, is_first_on_line, lines
+from tltlc.grammar.mistakes.reserved_names import ReservedNames
 from tltlc.grammar.tables import load
 
 _FIRST: Final = ("NAME", "LPAR", "ONCE", "HISTORICALLY", "PREVIOUSLY", "BEGINS", "ENDS", "UNTIL")
@@ -37,8 +38,10 @@ MAX_ERRORS: Final = 200
 
 def recover(source: SourceFile, lexed: Tokens) -> tuple[tuple[tree.Declaration, ...], tuple[Diagnostic, ...]]:
     """Return the declarations that can be read, and an error for each piece of the text that cannot be read."""
-    pieces = list(declarations(source, lexed.tokens[:-1]))
-    reader = _Reader(source, lexed, NamedEnums(pieces, lexed.tokens))
+    reserved = ReservedNames(source, lexed.tokens)
+    pieces = list(declarations(source, reserved.tokens[:-1]))
+    reader = _Reader(source, lexed, NamedEnums(pieces, reserved.tokens))
+    reader.diagnostics += reserved.errors()
     for piece in pieces:
         reader.read_declaration(reader.enums.with_short_values(piece))
         if len(reader.diagnostics) >= MAX_ERRORS:
