@@ -36,6 +36,7 @@ def _errors(text: str) -> list[Diagnostic]:
         ("signal screen: (home,\n    judge,\n    result)", "screen is judge", "judge"),
         ("signal level: int in [0, 9]", "level > 3", "level"),
         ("signal goal: bool\nsignal limit: bool", "limit", "limit"),
+        ("signal release: bool", "release", "release"),
         ("entity chest\nsignal reach(e): bool", "reach(chest)", "reach"),
     ],
 )
@@ -59,6 +60,13 @@ def _clauses(text: str, word: str) -> int:
 def test_the_other_errors_of_the_file_are_found() -> None:
     text = f"signal screen: (home, level)\n{RULES.format('screen is level')}spec c {{ reach screen is leval }}\n"
     assert [error.code for error in _errors(text)] == ["TLT0106", "TLT0201"]
+
+
+def test_the_operator_stays_where_it_stands_between_two_formulas() -> None:
+    text = "signal release: bool\nsignal won: bool\nspec s { require (won release won) and release }\n"
+    (error,) = _errors(text)
+    mended = apply_edits(SourceFile("a.tltl", text), error.fixes[0].edits).text
+    assert "require (won release won) and release_" in mended
 
 
 def test_the_new_name_is_free() -> None:

@@ -129,6 +129,10 @@ class Speaker:
         """Whether an atom is a condition on the steps so far, such as "seen since alarm", and no comparison."""
         return not isinstance(self._atoms[name].base, ComparisonName) and self._phrase(name) is not None
 
+    def is_earlier(self, name: str) -> bool:
+        """Whether an atom says that something has held at an earlier step: ``previously once p``."""
+        return name in self._before and self._occurred(self._before[name]) is not None
+
     def fact(self, name: str, *, holds: bool, is_first: bool) -> str | None:
         """Return what an atom about the past says where it holds, or where not; None if it has no opposite in words.
 

@@ -24,7 +24,10 @@ def _verdict(fspa: Fspa, *steps: str) -> str:
 
 def test_a_later_goal_may_have_begun_before() -> None:
     fspa = _spec("reach a then b")
-    assert boundaries(fspa) == ("then b: any later step with it counts, also if it began before",)
+    assert boundaries(fspa) == (
+        "then b: any later step counts, also if it began before; `begins` asks for a beginning",
+        "before its turn, a goal does not count, and breaks nothing",
+    )
     assert _verdict(fspa, "b", "ab") == "pending" and _verdict(fspa, "b", "ab", "b") == "satisfied"
 
 
@@ -35,6 +38,15 @@ def test_a_goal_that_begins_is_told_of_the_first_step_alone() -> None:
     )
     assert _verdict(fspa, "a") == "satisfied"
     assert not any(text.startswith("then") for text in boundaries(_spec("reach b then begins a")))
+
+
+@pytest.mark.parametrize("time", ["", "within 300 s "])
+def test_a_goal_after_an_earlier_one_is_told_as_one_behind_then(time: str) -> None:
+    fspa = _spec(f"require eventually {time}(b and previously once a)")
+    assert boundaries(fspa)[0] == (
+        "then b: any later step counts, also if it began before; `begins` asks for a beginning"
+    )
+    assert _verdict(fspa, "ab", "b") == "satisfied"
 
 
 def test_an_answer_may_come_at_the_last_step_and_counts_as_missed_where_play_ends() -> None:
@@ -136,9 +148,9 @@ def test_the_edge_of_the_last_seconds_is_where_it_is_told() -> None:
 
 
 def test_the_step_of_an_event_counts_since_it() -> None:
-    fspa = _spec("keep times_since(a, b) <= 0")
-    assert boundaries(fspa) == ("a since b: at that very step, it counts, too",)
-    assert _verdict(fspa, "", "ab") == "violated"
+    fspa = _spec("keep b implies times_since(a, b) <= 0")
+    assert boundaries(fspa) == ("a since b: what begins at that very step counts, what goes on from before does not",)
+    assert _verdict(fspa, "", "ab") == "violated" and _verdict(fspa, "a", "ab") == "holding"
 
 
 def test_a_time_in_all_does_not_count_the_first_step() -> None:
@@ -198,4 +210,4 @@ def test_the_beginning_that_a_timer_remembers_is_told(rate: int) -> None:
 
 def test_goals_that_exclude_each_other_have_not_begun_before() -> None:
     (fspa,) = compile_text(f"{SIGNALS}exclusive a, b\nspec s {{ reach a then b }}")
-    assert boundaries(fspa) == ()
+    assert boundaries(fspa) == ("before its turn, a goal does not count, and breaks nothing",)

@@ -312,7 +312,8 @@ def test_a_long_chain_is_a_numbered_list_and_no_sentence() -> None:
     assert text(explanation).startswith(
         "s\n=\n\nWhat it asks for\n  Reach, in this order:\n"
         "    1. a\n    2. b within 5 s after a\n    3. c within 3 s after b\n    4. d within 2 s after c\n    5. e\n\n"
-        "At the edges\n  - then e: any later step with it counts, also if it began before\n"
+        "At the edges\n  - then e: any later step counts, also if it began before; `begins` asks for a beginning\n"
+        "  - before its turn, a goal does not count, and breaks nothing\n"
         "  - within 5 s: up to and including the step 5 s later\n"
         "  - within 3 s: up to and including the step 3 s later\n"
         "  - within 2 s: up to and including the step 2 s later\n"

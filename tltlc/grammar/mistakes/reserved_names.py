@@ -13,6 +13,10 @@ from tltlc.grammar.mistakes.fragments import is_first_on_line
 
 _WORDS: Final = frozenset((*CLAUSES, *DECLARATIONS, *TEST_ITEMS))
 """The words that begin a clause, a declaration or a line of a test; behind such a beginning, they may be names."""
+_BETWEEN: Final = ("release", "strong_release")
+"""The operators that may be names where they do not stand between two formulas."""
+_ENDS: Final = ("NAME", "RPAR", "NUMBER", "UNIT", "TRUE", "FALSE")
+_STARTS: Final = ("NAME", "LPAR", "NOT", "TRUE", "FALSE", "ONCE", "PREVIOUSLY", "BEGINS", "ENDS")
 _DECLARING: Final = ("SIGNAL", "PREDICATE", "PARAM", "ENTITY", "LET")
 _BEHIND: Final = ("COLON", "IN", "LPAR", "COMMA", "EQUAL")
 _AROUND: Final = ("LPAR", "COMMA", "RPAR")
@@ -29,10 +33,16 @@ class ReservedNames:
 
     def _as_name(self, index: int, token: Token, tokens: Sequence[Token]) -> Token:
         first = self._first.get(token.text)
-        begins = is_first_on_line(self._source, tokens, index) or tokens[index - 1].type == "LBRACE"
-        if first is None or (begins and token is not first):
+        if first is None or (token is not first and self._is_word(index, tokens)):
             return token
         return Token("NAME", token.text, token.start, token.end)
+
+    def _is_word(self, index: int, tokens: Sequence[Token]) -> bool:
+        """Whether a word begins a clause, or stands between two formulas."""
+        before, after = tokens[index - 1], tokens[index + 1]
+        if tokens[index].text in _BETWEEN:
+            return before.type in _ENDS and after.type in _STARTS
+        return is_first_on_line(self._source, tokens, index) or before.type == "LBRACE"
 
     def errors(self) -> Iterator[Diagnostic]:
         """Yield an error for each of these words, at its declaration, with a fix that renames it in the whole text."""
@@ -55,7 +65,7 @@ def _declared(tokens: Sequence[Token]) -> Iterator[Token]:
             is_values = before.type == "COLON"
         elif token.type == "RPAR":
             is_values = False
-        elif token.text in _WORDS and token.type != "NAME":
+        elif token.text in (*_WORDS, *_BETWEEN) and token.type != "NAME":
             is_name = before.type in _DECLARING and after.type in _BEHIND
             if is_name or (is_values and before.type in _AROUND and after.type in _AROUND):
                 yield token

@@ -7,7 +7,14 @@ from typing import Final
 
 from tltlc.automaton.fspa import Fspa
 from tltlc.automaton.memory_phrases import Speaker
-from tltlc.automaton.remembered_formulas import broken_rule, counted, counted_since, names_read, waited_for
+from tltlc.automaton.remembered_formulas import (
+    broken_rule,
+    counted,
+    counted_since,
+    names_read,
+    past_operands,
+    waited_for,
+)
 from tltlc.automaton.text import times_of
 from tltlc.automaton.value_phrases import value_words
 from tltlc.core.names import ComparisonName, split_name
@@ -25,6 +32,7 @@ _WAITS: Final = ("late", "passed", "recent")
 """The timers, whose first argument is a time, that say how long something may take."""
 _LASTING: Final = ("breach", "lasted", "lately")
 """Those that say how long something must last."""
+_MOST_GOALS: Final = 4
 _FROM_NEXT: Final = "the next "
 """What stands before a time that begins at the next step."""
 
@@ -60,7 +68,7 @@ class _Boundaries:
             yield "results with fractions are rounded: an exact limit may be missed by the last digit"
 
     def _goals(self) -> Iterator[str]:
-        """Yield what is to know of goals behind `then`: they may have begun before."""
+        """Yield what is to know of goals behind `then`: they may have come, or begun, before."""
         goals: dict[str, None] = {}
         for node in self._formula.walk():
             following = next_goal(node)
@@ -69,10 +77,33 @@ class _Boundaries:
             goal, before = _state_of(following.body), _state_of(node)
             if goal is not f.TRUE and self._may_last(before, goal):
                 goals[bracketed_phrase(self._speaker.spoken(goal))] = None
+        goals.update(dict.fromkeys(self._goals_behind_earlier_ones()))
         if goals:
-            first, *others = goals
-            rest = ", and so on" if others else ""
-            yield f"then {first}{rest}: any later step with it counts, also if it began before"
+            rest = ", and so on" if len(goals) > _MOST_GOALS else ""
+            names = ", then ".join([*goals][:_MOST_GOALS])
+            yield f"then {names}{rest}: any later step counts, also if it began before; `begins` asks for a beginning"
+        if self._is_goal_order():
+            yield "before its turn, a goal does not count, and breaks nothing"
+
+    def _goals_behind_earlier_ones(self) -> Iterator[str]:
+        """Yield what must come together with something at an earlier step: b in `reach b and previously once a`."""
+        bodies = [operator.body for operator, _ in _bounded_operators(self._formula) if operator.op == "F"]
+        for node, is_positive in _signed(self._formula):
+            # A time from the first step of play on is an `until`.
+            bodies += node.args[-1:] if node.op in ("F", "U") and is_positive else ()
+        if not bodies:
+            return
+        remembered = (part for register in self._fspa.registers for part in past_operands(register) or ())
+        bodies = [*remembered, *bodies]
+        for body in bodies:
+            earlier = [name for name in body.atoms() if self._speaker.is_earlier(name)] if body.op == "and" else []
+            goal = f.and_(*(part for part in body.args if part.op == "atom" and part.name not in earlier))
+            if earlier and goal is not f.TRUE and not any(map(self._speaker.is_about_past, goal.atoms())):
+                yield bracketed_phrase(self._speaker.spoken(goal))
+
+    def _is_goal_order(self) -> bool:
+        """Whether the spec asks for goals in order, and does not only forbid an order."""
+        return any(next_goal(node) is not None and is_positive for node, is_positive in _signed(self._formula))
 
     def _may_last(self, before: Formula, goal: Formula) -> bool:
         """Whether a goal may hold at the step of the goal before it, and be no event, which holds at single steps."""
@@ -130,7 +161,7 @@ class _Boundaries:
         for operator, is_next in _bounded_operators(self._formula):
             time = counts.time(operator.steps + (is_next or operator.op == "G"))
             (waits if operator.op == "F" else later if is_next else lasting)[time] = None
-            if operator.op == "F" and any(part.op == "G" for part in operator.body.walk()):
+            if operator.op == "F" and any(part.op in ("G", "W", "U", "R") for part in operator.body.walk()):
                 yield "what must hold from then on may also hold and end again before that step"
         for item in self._fspa.atoms:
             if item.timer is not None and item.base in (*_WAITS, *_LASTING) and len(item.arguments) > 1:
@@ -182,8 +213,11 @@ class _Boundaries:
         if register.kind == "value_at" and event is not None:
             value = value_words(register, self._speaker.event_text(register))
             yield f"{value}: at {self._speaker.noun_text(event)} itself, the one of that step"
-        if register.kind in ("times_since", "total_time_since") and event is not None:
-            yield f"{words} since {self._speaker.noun_text(event)}: at that very step, it counts, too"
+        if register.kind == "times_since" and event is not None:
+            begun = f"{words} since {self._speaker.noun_text(event)}"
+            yield f"{begun}: what begins at that very step counts, what goes on from before does not"
+        if register.kind == "total_time_since" and event is not None:
+            yield f"how long {words} has held since {self._speaker.noun_text(event)}: that very step counts"
         if register.kind in ("total_time", "total_time_since"):
             yield f"how long {words} has held in all: the first step of play adds nothing, since no time has passed"
 
