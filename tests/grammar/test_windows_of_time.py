@@ -109,3 +109,13 @@ def test_a_goal_that_counts_keeps_its_readings(typed: str, clause: str) -> None:
     (error,) = errors(SourceFile("a.tltl", f"{HEAD}spec s {{\n{typed}\n}}\n"))
     assert f"`{clause}`" in (error.help or "")
     assert error.fixes == ()
+
+
+@pytest.mark.parametrize(
+    "typed",
+    ["keep begins fire implies spray within less than 2 s", "whenever fire begins, spray in under 2 s"],
+)
+def test_less_than_a_time_is_told_that_its_last_step_counts(typed: str) -> None:
+    (error,) = errors(SourceFile("a.tltl", f"{HEAD}spec s {{\n{typed}\n}}\n"))
+    assert (error.help or "").startswith("write `keep begins fire implies eventually within 2 s spray`")
+    assert "2 s later counts, too: write 1.9 s if that is too late" in (error.help or "")

@@ -37,6 +37,7 @@ _CHANGES: Final = (" != previous(", " > previous(", " < previous(", " or ends ("
 _COUNTS: Final = ("times", "times_since", "times_within")
 _OF_EDGES: Final = ("times", "times_within")
 """The functions that count the beginnings of beginnings and ends as these themselves."""
+_LESS: Final = ("less than", "under")
 _FROM_START: Final = ("times", "total_time", "time_holding")
 """The functions that may count steps before a rule begins."""
 _MOST_STEPS: Final = 100
@@ -53,7 +54,8 @@ def notes(clauses: str, names: DeclaredNames, typed: str) -> tuple[str, ...]:
     all_notes = (note for part in formulas for note in _notes(part, source, names.step_s))
     new = dict.fromkeys(note for note, words in all_notes if not any(word in typed.lower() for word in words))
     anew = (note for part in _parts_of(declarations) if "before" in typed and (note := _asked_anew(part, source)))
-    return (*equality_notes(clauses, typed), *new, *dict.fromkeys(anew))
+    less = _last_step_notes(source, declarations, names.step_s, typed)
+    return (*equality_notes(clauses, typed), *new, *dict.fromkeys((*anew, *less)))
 
 
 def _notes(expression: Expr, source: SourceFile, step_s: float) -> Iterator[tuple[str, tuple[str, ...]]]:
@@ -118,6 +120,26 @@ def _apart_note(rule: Expr, source: SourceFile, step_s: float) -> str:
     longest = rule.bound.high
     shorter = f"{round(longest.value * (1 - 1 / steps), 6):g} {longest.unit}"
     return f"{source.slice(longest.span)} after the first is forbidden, too: write {shorter} if it is allowed"
+
+
+def _asks_for_less(typed: str) -> bool:
+    return any(less in typed.lower() for less in _LESS)
+
+
+def _last_step_notes(source: SourceFile, specs: Sequence[Declaration], step_s: float, typed: str) -> list[str]:
+    noted = (_last_step_note(part, source, step_s) for part in _parts_of(specs)) if _asks_for_less(typed) else ()
+    return [note for note in noted if note]
+
+
+def _last_step_note(answer: Expr, source: SourceFile, step_s: float) -> str:
+    """Return that `eventually within 2 s a` may come 2 s later, for one who asks for less; "" for other formulas."""
+    if not isinstance(answer, Unary) or answer.op != "F" or answer.bound is None:
+        return ""
+    longest, steps = answer.bound.high, _steps(answer.bound.high, step_s)
+    if not isinstance(longest, NumberExpr) or not 1 < steps <= _MOST_STEPS:
+        return ""
+    shorter = f"{round(longest.value * (1 - 1 / steps), 6):g} {longest.unit or ''}".rstrip()
+    return f"{source.slice(longest.span)} later counts, too: write {shorter} if that is too late"
 
 
 def _every_note(comparison: Expr, source: SourceFile, step_s: float) -> str:
@@ -194,8 +216,10 @@ def reading_notes(clauses: str, names: DeclaredNames, typed: str) -> tuple[str, 
     if source is not None and "time_holding" not in typed:
         compared = (part for part in _parts_of(specs) if isinstance(part, BinaryExpr) and part.op in (">", ">="))
         times = [_of_time(part, source, names.step_s) for part in compared if _is_held(part.left)]
-    if source is not None and "then within" not in typed:
+    if source is not None and ("then within" not in typed or _asks_for_less(typed)):
         times += [_apart_note(part, source, names.step_s) for part in _parts_of(specs)]
+    if source is not None:
+        times += _last_step_notes(source, specs, names.step_s, typed)
     if source is not None and "every" in typed:
         times += [_every_note(part, source, names.step_s) for part in _parts_of(specs)]
     return (*equality_notes(clauses, typed), *dict.fromkeys(note for note in times if note))

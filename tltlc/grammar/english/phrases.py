@@ -96,7 +96,8 @@ PHRASES: Final[Mapping[str, str]] = {
     "spend": "spend|spends|be",
     "for": "for|for the next|for a full|for next|for at least|at least for|for the following",
     "for_last": "for last|for previous|throughout last|during last|over last|for whole last|for at least last|for past",
-    "within": "within|in|by|in under|in less than|in at most|in no more than|no later than|within at most|inside|"
+    "within": "within|in|by|in under|within under|in less than|within less than|in at most|in no more than|"
+    "no later than|within at most|inside|"
     "in the next|within the next|in next|within next|not later than|under",
     "first": "in the first|within the first|during the first|in first|within first|during first|for the first|"
     "for first",
