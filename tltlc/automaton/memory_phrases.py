@@ -41,6 +41,7 @@ from tltlc.automaton.value_phrases import (
     window_text,
 )
 from tltlc.core.names import ComparisonName, SpokenName, full_name, split_name, with_calls
+from tltlc.core.record import record
 from tltlc.expression.tree import Before, SignalValue
 from tltlc.logic.formula import TRUE, Formula, always, and_, atom, eventually, implies, not_, or_, rebuild
 from tltlc.logic.implication import complement
@@ -76,6 +77,19 @@ _OPPOSITE_FACTS: Final = {
 """
 _COUNTING: Final = frozenset({"samples", "elapsed", "time_since", "age"})
 """The kinds of the registers that these timers read."""
+
+
+@record
+class Turn:
+    """What begins or ends: the ``subject`` in words, and the ``verb``, "begin" or "end"."""
+
+    subject: str
+    verb: str
+
+    @property
+    def text(self) -> str:
+        """The turn in words: ``seen begins``."""
+        return f"{self.subject} {self.verb}s"
 
 
 def _single(formula: Formula) -> Formula:
@@ -189,27 +203,25 @@ class Speaker:
         if node.op != "and" and not is_denied:
             return None
         original = {_single(part): part for part in node.args}
-        parts = list(original)
-        edges: list[Formula] = []
-        for operand, verb, members in self._edges:
-            said = tuple(map(opposite, members)) if is_denied else members
-            if all(part in parts for part in said):
-                parts = [part for part in parts if part not in said]
-                begins = atom(f"{self._subject_text(operand)} {verb}s")
-                edges.append(not_(begins) if is_denied else begins)
-        if not edges:
+        turns, parts = self.turns((*original,), is_denied=is_denied)
+        if not turns:
             return None
+        edges = [not_(atom(turn.text)) if is_denied else atom(turn.text) for turn in turns]
         rest = [done[original[part]] for part in parts]
         return edges[0] if len(edges) + len(rest) == 1 else rebuild(node, (*edges, *rest))
 
-    def turns(self, literals: Sequence[Formula]) -> tuple[list[str], list[Formula]]:
-        """Return what begins or ends by these literals, such as "seen begins", and the literals that are left."""
-        texts, rest = [], list(literals)
+    def turns(self, literals: Sequence[Formula], *, is_denied: bool = False) -> tuple[list[Turn], list[Formula]]:
+        """Return what begins or ends by these literals, and the literals that are left.
+
+        If ``is_denied``, the literals are the opposites of those by which it does.
+        """
+        turns, rest = [], list(literals)
         for operand, verb, members in self._edges:
-            if all(part in rest for part in members):
-                rest = [part for part in rest if part not in members]
-                texts.append(f"{self._subject_text(operand)} {verb}s")
-        return texts, rest
+            needed = tuple(map(opposite, members)) if is_denied else members
+            if all(part in rest for part in needed):
+                rest = [part for part in rest if part not in needed]
+                turns.append(Turn(self._subject_text(operand), verb))
+        return turns, rest
 
     def _answers(self, node: Formula, done: Mapping[Formula, Formula]) -> Formula | None:
         """Return ``G !late & G(due -> X true)`` as "whenever alarm, reach hidden within 5 s", else None.

@@ -41,7 +41,10 @@ def cause_words(fspa: Fspa, cause: Cause) -> str:
     """Return what is true at the step that breaks a clause: "`at(boss)` without `has(sword)`"."""
     literals = {_literal(fspa, atom, holds=polarity): (atom, polarity) for atom, polarity in cause.prime}
     turns, rest = Speaker(fspa).turns(tuple(literals))
-    true = [*turns, *(atom_words(fspa, atom) for atom, polarity in map(literals.__getitem__, rest) if polarity)]
+    true = [
+        *(turn.text for turn in turns),
+        *(atom_words(fspa, atom) for atom, polarity in map(literals.__getitem__, rest) if polarity),
+    ]
     false: list[str] = []
     for atom, polarity in map(literals.__getitem__, rest):
         if not polarity:

@@ -31,10 +31,10 @@ _WEAK: Final = "weak_eventually"
 
 def uncut(words: Words) -> Words | None:
     """Return the words before `unless the recording ends`; None if a sentence does not end so."""
-    found = words.find_last(_ENDS)
-    if found is None or found[0] + len(found[1]) < len(words):
+    ending = words.find_last(_ENDS)
+    if ending is None or ending[0] + len(ending[1]) < len(words):
         return None
-    before = words[: found[0]]
+    before = words[: ending[0]]
     return before[:-1] if before.word(len(before) - 1) == "," else before
 
 

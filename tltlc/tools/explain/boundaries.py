@@ -116,10 +116,8 @@ class _Boundaries:
 
     def _events(self) -> Iterator[str]:
         """Yield what is to know of beginnings: which steps they are, and that the first step may be one."""
-        texts: dict[str, None] = {}
-        for literals in self._conjunctions():
-            texts.update(dict.fromkeys(self._speaker.turns(literals)[0]))
-        begun = [text for text in texts if text.endswith(" begins")]
+        turns = (turn for literals in self._conjunctions() for turn in self._speaker.turns(literals)[0])
+        begun = dict.fromkeys(turn.text for turn in turns if turn.verb == "begin")
         if begun:
             names = ", ".join(begun)
             yield f"{names}: at the first of its steps in a row; also at the first step of play, if it holds there"

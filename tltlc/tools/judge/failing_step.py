@@ -93,8 +93,8 @@ class FailingStep:
             yield f"{place.file}:{place.line}: {fspa.clauses[item.clause]}"
             values = self._words(index for index in range(len(fspa.atoms)) if self._is_told(index, item.atoms))
             after = "needs a later step" if item.needs_step else ""
-            if told := "; ".join(filter(None, (after, values))):
-                yield f"not met at step {self._step.number}, the last: {told}"
+            if reason := "; ".join(filter(None, (after, values))):
+                yield f"not met at step {self._step.number}, the last: {reason}"
 
     def values(self) -> dict[str, Any] | None:
         """Return the failure as JSON values; None if the trace does not fail.

@@ -54,8 +54,8 @@ class MeasuredStep:
         values |= {
             name: register_value(register, self.known[name], fspa.clock_s) for name, register in registers.items()
         }
-        found = {node.name for node in nodes(read) if isinstance(node, SignalValue)}
-        names = sorted(found, key=lambda name: (name in registers, name))
+        names_in_atom = {node.name for node in nodes(read) if isinstance(node, SignalValue)}
+        names = sorted(names_in_atom, key=lambda name: (name in registers, name))
         reads = tuple(StepValue(words.get(name, name), values[name]) for name in names)
         if measured is not None or enum_of(fspa, atom) is not None:
             return reads

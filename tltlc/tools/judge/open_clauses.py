@@ -30,15 +30,15 @@ def open_clauses(clauses: Clauses, texts: Sequence[str], samples: Sequence[Trace
     ``texts`` are the texts of all clauses of the spec, in order. A clause whose automaton alone would be too large is
     left out.
     """
-    found = {}
+    opened: dict[int, OpenClause] = {}
     for part in clauses.parts:
-        if part.text in texts and (index := texts.index(part.text)) not in found:
+        if part.text in texts and (index := texts.index(part.text)) not in opened:
             runner = TraceRunner(part.fspa)
             ended = runner.run(samples)[0]
             if ended.outcome.verdict == "pending":
                 needs_step = runner.run([*samples, samples[-1]])[0].outcome.accepted
-                found[index] = OpenClause(index, _atoms_after(part.fspa, ended.state), needs_step)
-    return tuple(found[index] for index in sorted(found))
+                opened[index] = OpenClause(index, _atoms_after(part.fspa, ended.state), needs_step)
+    return tuple(opened[index] for index in sorted(opened))
 
 
 def _atoms_after(fspa: Fspa, state: int) -> frozenset[str]:
